@@ -1,0 +1,125 @@
+#!/usr/bin/env bash
+# Installs what the pipeline needs: system packages (FreeFEM, a fast BLAS, the libraries gmsh links to) and
+# .venv with the Python packages of requirements.lock. Installs only what is missing; run it as often as you like.
+# PYTHON=/path/to/python3 ./setup.sh chooses the interpreter.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+readonly LOCK=requirements.lock
+readonly STAMP=.venv/complete # written last: .venv is as the lock says
+
+# Shared libraries that gmsh's wheel loads but does not bring, and the packages that have them.
+readonly GMSH_LIBRARIES="
+    libGL.so.1:libgl1 libGLU.so.1:libglu1-mesa libX11.so.6:libx11-6 libXcursor.so.1:libxcursor1 libXext.so.6:libxext6
+    libXfixes.so.3:libxfixes3 libXft.so.2:libxft2 libXinerama.so.1:libxinerama1 libXrender.so.1:libxrender1
+    libfontconfig.so.1:libfontconfig1 libgomp.so.1:libgomp1"
+# FreeFEM runs one thread per process, so the BLAS without threads is as fast as the others.
+readonly BLAS=libopenblas0-serial
+
+say() { printf '%s\n' "$*"; }
+die() { printf 'setup.sh: %s\n' "$*" >&2; exit 1; }
+
+# Is the Debian package $1 installed? False on systems without dpkg.
+has_package() { [[ $(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]; }
+
+# Where the dynamic linker finds the library $1, empty if nowhere.
+library() { awk -v name="$1" '$1 == name { print $NF; exit }' <<<"$LIBRARIES"; }
+
+# An interpreter that can make .venv: 3.11 or newer, with venv and pip's installer.
+find_python() {
+    local candidate
+    for candidate in ${PYTHON:-python3 /usr/bin/python3 python3.13 python3.12 python3.11}; do
+        if "$candidate" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+            printf '%s' "$candidate"
+            return
+        fi
+    done
+}
+
+# The packages to install, one a line.
+missing_packages() {
+    local freefem pair
+    freefem=$(command -v FreeFem++ || true)
+    if [[ -z $freefem ]]; then
+        printf '%s\n' freefem++ libfreefem++
+    elif has_package freefem++ && ! has_package libfreefem++; then
+        printf '%s\n' libfreefem++ # the plugins
+    fi
+    # Only Debian's FreeFEM takes the system's BLAS; */blas/* is the reference one, four times slower.
+    if [[ -z $freefem ]] || has_package freefem++; then
+        case $(readlink -f "$(library libblas.so.3)") in
+            "" | */blas/*) has_package $BLAS || printf '%s\n' $BLAS ;;
+        esac
+    fi
+    for pair in $GMSH_LIBRARIES; do
+        [[ -n $(library "${pair%%:*}") ]] || printf '%s\n' "${pair##*:}"
+    done
+    if ! is_complete && [[ -z $(find_python) ]]; then
+        printf '%s\n' python3-venv
+    fi
+}
+
+# Runs apt-get as root; what it prints is shown only when it fails.
+apt_get() {
+    local log
+    log=$(mktemp)
+    if ! "${AS_ROOT[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=120 "$@" \
+        </dev/null >"$log" 2>&1; then
+        tail -n 20 "$log" >&2
+        rm "$log"
+        return 1
+    fi
+    rm "$log"
+}
+
+install_packages() {
+    AS_ROOT=()
+    if [[ $(id -u) != 0 ]]; then
+        AS_ROOT=(sudo -n)
+        [[ -t 0 ]] && AS_ROOT=(sudo) # somebody is there to type a password
+    fi
+    if ! command -v apt-get >/dev/null || ! "${AS_ROOT[@]}" true 2>/dev/null; then
+        die "these system packages are missing and cannot be installed from here: $*
+As root, on Debian or Ubuntu:
+    apt-get update && apt-get install --no-install-recommends $*
+then run ./setup.sh again. A FreeFem++ of your own need only be on PATH."
+    fi
+    say "Installing system packages: $*"
+    apt_get update || say "apt-get update failed: trying with the package lists at hand"
+    apt_get install --yes --no-install-recommends "$@" || die "apt-get could not install: $*"
+}
+
+# What .venv must agree with: the lock, this folder (programs in .venv name it) and the version of Python.
+wanted_stamp() { printf '%s %s %s' "$(sha256sum <"$LOCK")" "$PWD" "$(.venv/bin/python -V 2>/dev/null)"; }
+is_complete() { [[ -e $STAMP && $(<"$STAMP") == "$(wanted_stamp)" ]]; }
+
+install_python_packages() {
+    local python clear=()
+    python=$(find_python)
+    [[ -n $python ]] || die "Python 3.11 or newer is needed; here is $(python3 -V 2>&1 || true). Install one and name it:
+    PYTHON=/path/to/python3.11 ./setup.sh"
+    # gmsh publishes a wheel for this one only
+    [[ $(uname -m) == x86_64 ]] || die "gmsh has no Python package for Linux on $(uname -m); x86_64 is needed."
+    say "Installing Python packages into .venv (a minute or two, once)"
+    # a .venv of another Python or of another folder is built anew
+    if [[ $("$python" -V) != "$(.venv/bin/python -V 2>/dev/null)" || ! -e $STAMP || $(<"$STAMP") != *" $PWD "* ]]; then
+        clear=(--clear)
+    fi
+    "$python" -m venv "${clear[@]}" .venv || die "$python could not make .venv"
+    rm -f "$STAMP"
+    # Nothing is compiled here but connection-pool, a few lines of Python published as source alone.
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --require-hashes \
+        --only-binary :all: --no-binary connection-pool --use-pep517 --requirement "$LOCK" ||
+        die "pip could not install the packages of $LOCK"
+    .venv/bin/python -c 'import gmsh, snakemake' || die "the Python packages are installed but do not load"
+    wanted_stamp >"$STAMP"
+}
+
+LIBRARIES=$(PATH=$PATH:/usr/sbin:/sbin ldconfig -p)
+mapfile -t missing < <(missing_packages)
+[[ ${#missing[@]} == 0 ]] || install_packages "${missing[@]}"
+is_complete || install_python_packages
+say "Everything is installed. Next:
+    .venv/bin/snakemake --cores 2 smoke    a first look, about a minute
+    .venv/bin/snakemake --cores 2          the whole study
+    .venv/bin/pytest                       the tests"
