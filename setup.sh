@@ -107,10 +107,9 @@ install_python_packages() {
     fi
     "$python" -m venv "${clear[@]}" .venv || die "$python could not make .venv"
     rm -f "$STAMP"
-    # Nothing is compiled here but connection-pool, a few lines of Python published as source alone.
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --require-hashes \
-        --only-binary :all: --no-binary connection-pool --use-pep517 --requirement "$LOCK" ||
-        die "pip could not install the packages of $LOCK"
+    # --use-pep517 for connection-pool, which is published as source alone: old and new pip build it the same way
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --require-hashes --use-pep517 \
+        --requirement "$LOCK" ||         die "pip could not install the packages of $LOCK"
     .venv/bin/python -c 'import gmsh, snakemake' || die "the Python packages are installed but do not load"
     wanted_stamp >"$STAMP"
 }
@@ -120,6 +119,6 @@ mapfile -t missing < <(missing_packages)
 [[ ${#missing[@]} == 0 ]] || install_packages "${missing[@]}"
 is_complete || install_python_packages
 say "Everything is installed. Next:
-    .venv/bin/snakemake --cores 2 smoke    a first look, about a minute
+    .venv/bin/snakemake --cores 2 smoke    a small study, for a first look
     .venv/bin/snakemake --cores 2          the whole study
     .venv/bin/pytest                       the tests"
