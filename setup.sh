@@ -109,7 +109,7 @@ install_python_packages() {
     rm -f "$STAMP"
     # --use-pep517 for connection-pool, which is published as source alone: old and new pip build it the same way
     .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --require-hashes --use-pep517 \
-        --requirement "$LOCK" ||         die "pip could not install the packages of $LOCK"
+        --requirement "$LOCK" || die "pip could not install the packages of $LOCK"
     .venv/bin/python -c 'import gmsh, snakemake' || die "the Python packages are installed but do not load"
     wanted_stamp >"$STAMP"
 }
