@@ -54,61 +54,62 @@ missing_packages() {
     for pair in $GMSH_LIBRARIES; do
         [[ -n $(library "${pair%%:*}") ]] || printf '%s\n' "${pair##*:}"
     done
-    if ! is_complete && [[ -z $(find_python) ]]; then
+    if [[ -z ${PYTHON:-} ]] && ! is_complete && [[ -z $(find_python) ]]; then
         printf '%s\n' python3-venv
     fi
 }
 
-# Runs apt-get as root; what it prints is shown only when it fails.
-apt_get() {
-    local log
+# Runs a command whose output is of interest only when it fails.
+quietly() {
+    local log status=0
     log=$(mktemp)
-    if ! "${AS_ROOT[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=120 "$@" \
-        </dev/null >"$log" 2>&1; then
-        tail -n 20 "$log" >&2
-        rm "$log"
-        return 1
-    fi
+    "$@" </dev/null >"$log" 2>&1 || status=$?
+    [[ $status == 0 ]] || tail -n 20 "$log" >&2
     rm "$log"
+    return $status
 }
 
 install_packages() {
-    AS_ROOT=()
+    local as_root=()
     if [[ $(id -u) != 0 ]]; then
-        AS_ROOT=(sudo -n)
-        [[ -t 0 ]] && AS_ROOT=(sudo) # somebody is there to type a password
+        as_root=(sudo -n)
+        [[ -t 0 ]] && as_root=(sudo) # somebody is there to type a password
     fi
-    if ! command -v apt-get >/dev/null || ! "${AS_ROOT[@]}" true 2>/dev/null; then
+    if ! command -v apt-get >/dev/null || ! "${as_root[@]}" true 2>/dev/null; then
         die "these system packages are missing and cannot be installed from here: $*
 As root, on Debian or Ubuntu:
     apt-get update && apt-get install --no-install-recommends $*
 then run ./setup.sh again. A FreeFem++ of your own need only be on PATH."
     fi
     say "Installing system packages: $*"
-    apt_get update || say "apt-get update failed: trying with the package lists at hand"
-    apt_get install --yes --no-install-recommends "$@" || die "apt-get could not install: $*"
+    local apt_get=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=120)
+    quietly "${apt_get[@]}" update || say "apt-get update failed: trying with the package lists at hand"
+    quietly "${apt_get[@]}" install --yes --no-install-recommends "$@" || die "apt-get could not install: $*"
 }
 
+version() { "$1" -V 2>/dev/null || true; }
+
 # What .venv must agree with: the lock, this folder (programs in .venv name it) and the version of Python.
-wanted_stamp() { printf '%s %s %s' "$(sha256sum <"$LOCK")" "$PWD" "$(.venv/bin/python -V 2>/dev/null)"; }
-is_complete() { [[ -e $STAMP && $(<"$STAMP") == "$(wanted_stamp)" ]]; }
+wanted_stamp() { printf '%s %s %s' "$(sha256sum <"$LOCK")" "$PWD" "$(version "${PYTHON:-.venv/bin/python}")"; }
+is_complete() { [[ -x .venv/bin/python && -e $STAMP && $(<"$STAMP") == "$(wanted_stamp)" ]]; }
 
 install_python_packages() {
     local python clear=()
     python=$(find_python)
-    [[ -n $python ]] || die "Python 3.11 or newer is needed; here is $(python3 -V 2>&1 || true). Install one and name it:
+    [[ -n $python ]] || die "Python 3.11 or newer with its venv module is needed; ${PYTHON:-python3} is \
+$("${PYTHON:-python3}" -V 2>&1 || true). Install one and name it:
     PYTHON=/path/to/python3.11 ./setup.sh"
     # gmsh publishes a wheel for this one only
     [[ $(uname -m) == x86_64 ]] || die "gmsh has no Python package for Linux on $(uname -m); x86_64 is needed."
     say "Installing Python packages into .venv (a minute or two, once)"
     # a .venv of another Python or of another folder is built anew
-    if [[ $("$python" -V) != "$(.venv/bin/python -V 2>/dev/null)" || ! -e $STAMP || $(<"$STAMP") != *" $PWD "* ]]; then
+    if [[ $(version "$python") != "$(version .venv/bin/python)" || ! -e $STAMP || $(<"$STAMP") != *" $PWD "* ]]; then
         clear=(--clear)
     fi
     "$python" -m venv "${clear[@]}" .venv || die "$python could not make .venv"
     rm -f "$STAMP"
     # --use-pep517 for connection-pool, which is published as source alone: old and new pip build it the same way
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --require-hashes --use-pep517 \
+    quietly .venv/bin/python -m pip install --disable-pip-version-check --no-input --require-hashes --use-pep517 \
         --requirement "$LOCK" || die "pip could not install the packages of $LOCK"
     .venv/bin/python -c 'import gmsh, snakemake' || die "the Python packages are installed but do not load"
     wanted_stamp >"$STAMP"
