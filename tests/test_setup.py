@@ -1,0 +1,105 @@
+"""setup.sh asks only for what is missing, and the lock belongs to pyproject.toml."""
+
+import re
+import shutil
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+ROOT = Path(__file__).parent.parent
+# all that setup.sh may call before it installs anything
+TOOLS = ["awk", "bash", "dirname", "env", "readlink", "sha256sum"]
+
+
+def locked_versions() -> dict[str, str]:
+    """Versions of requirements.lock by canonical name."""
+    pins = re.findall(r"^([\w.-]+)==([^\s;]+)", (ROOT / "requirements.lock").read_text(), re.M)
+    return {canonicalize_name(name): version for name, version in pins}
+
+
+def declared() -> list[Requirement]:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    return [
+        Requirement(r) for r in project["dependencies"] + project["optional-dependencies"]["dev"]
+    ]
+
+
+@pytest.mark.parametrize("requirement", declared(), ids=lambda r: r.name)
+def test_lock_holds_a_version_in_range(requirement: Requirement) -> None:
+    assert locked_versions()[canonicalize_name(requirement.name)] in requirement.specifier
+
+
+def test_lock_names_no_host_and_hashes_everything() -> None:
+    lock = (ROOT / "requirements.lock").read_text()
+    assert "://" not in lock
+    entries = re.split(r"\n(?=\w)", lock[lock.index("\n", lock.rindex("\n#") + 1) + 1 :])
+    assert len(entries) == len(locked_versions())
+    assert all("--hash=sha256:" in entry for entry in entries)
+
+
+@pytest.fixture
+def bare_machine(tmp_path: Path):
+    """Run setup.sh where the programs and libraries given are all there is, without root."""
+    checkout, programs = tmp_path / "checkout", tmp_path / "bin"
+    checkout.mkdir()
+    programs.mkdir()
+    for name in ("setup.sh", "requirements.lock"):
+        shutil.copy(ROOT / name, checkout)
+    for tool in TOOLS:
+        (programs / tool).symlink_to(shutil.which(tool))
+
+    def program(name: str, body: str) -> None:
+        path = programs / name
+        path.write_text(f"#!/bin/sh\n{body}\n")
+        path.chmod(0o755)
+
+    def run(libraries: list[str], *, freefem: bool) -> subprocess.CompletedProcess[str]:
+        program("id", "echo 1000")
+        program(
+            "ldconfig", "\n".join(f"echo '{name} (libc6) => /lib/{name}'" for name in libraries)
+        )
+        program("dpkg-query", "exit 1")
+        if freefem:
+            program("FreeFem++", "exit 0")
+        return subprocess.run(
+            [programs / "bash", checkout / "setup.sh"],
+            env={"PATH": str(programs), "PYTHON": "/bin/false"},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=30,
+        )
+
+    return run
+
+
+def test_without_root_names_the_missing_packages(bare_machine) -> None:
+    result = bare_machine(["libGL.so.1", "libgomp.so.1"], freefem=False)
+    assert result.returncode == 1
+    (command,) = re.findall(r"apt-get install .*", result.stderr)
+    assert {"freefem++", "libfreefem++", "libopenblas0-serial", "libglu1-mesa"} <= set(
+        command.split()
+    )
+    assert not {"libgl1", "libgomp1"} & set(command.split())
+
+
+def test_another_freefem_is_enough(bare_machine) -> None:
+    result = bare_machine(["libGL.so.1"], freefem=True)
+    assert result.returncode == 1
+    (command,) = re.findall(r"apt-get install .*", result.stderr)
+    assert "libglu1-mesa" in command
+    assert "freefem" not in command
+    assert "blas" not in command
+
+
+def test_old_python_is_refused(bare_machine) -> None:
+    source = (ROOT / "setup.sh").read_text()
+    libraries = re.findall(r"(lib\w+\.so\.\d+):", source)
+    assert len(libraries) > 5
+    result = bare_machine(libraries, freefem=True)
+    assert result.returncode == 1
+    assert "Python 3.11 or newer" in result.stderr
