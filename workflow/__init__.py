@@ -1,0 +1,1 @@
+"""From the study file to cases, and from records to dataset, figures and verdicts."""
