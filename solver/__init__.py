@@ -1,0 +1,1 @@
+"""What is solved, the models that solve it, and the record of a solved case."""

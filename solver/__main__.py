@@ -1,0 +1,54 @@
+"""Solve one case: ``python -m solver --help``.
+
+Ends with status 0 whenever the case was understood: how the solve went is a status in the record.
+Ends with status 2 and one message if the case makes no sense.
+"""
+
+import argparse
+import json
+import os
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+
+from geometry.refusal import Refusal
+from solver.case import Case
+from solver.freefem import Limits
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Parse the command line, solve, write record and cost."""
+    start = time.monotonic()
+    parser = argparse.ArgumentParser(prog="python -m solver", description=__doc__)
+    parser.add_argument("--case", required=True, help="the case as JSON text (solver/case.py)")
+    parser.add_argument("--mesh", type=Path, help="made by python -m geometry; not for all models")
+    parser.add_argument("--record", type=Path, required=True, help="HDF5 file to write")
+    parser.add_argument("--cost", type=Path, required=True, help="JSON file: seconds and memory")
+    parser.add_argument("--log", type=Path, required=True, help="what FreeFEM prints")
+    parser.add_argument("--wall-time", type=float, default=3600.0, help="limit [s]")
+    parser.add_argument("--memory", type=float, default=4000.0, help="limit [MB]")
+    given = parser.parse_args(arguments)
+    try:
+        case = Case.from_json(given.case)
+    except (Refusal, KeyError, TypeError, ValueError) as error:
+        print(f"no such case can be solved: {error}", file=sys.stderr)
+        return 2
+    from solver import record  # numpy only once the case is known to make sense
+    from solver.solve import solve
+
+    limits = Limits(wall_time=given.wall_time, memory=given.memory)
+    given.log.write_text("")
+    solution, usage = solve(case, given.mesh, given.log, limits)
+    record.write(given.record, case, solution)
+    cost = {"total_seconds": time.monotonic() - start, "status": solution.status}
+    if usage is not None:
+        cost |= {f"freefem_{name}": value for name, value in asdict(usage).items()}
+    aside = given.cost.with_name(f".{given.cost.name}.{os.getpid()}")
+    aside.write_text(json.dumps(cost, sort_keys=True) + "\n")
+    os.replace(aside, given.cost)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

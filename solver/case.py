@@ -1,0 +1,164 @@
+"""A case: everything that can change a result, and nothing else.
+
+Its canonical JSON is its identity. Settings that the model of a case does not read are not part of
+it, so that scenes which differ only there share the solve.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from geometry.muscle import Muscle
+from geometry.refusal import build
+from solver.effects import Effects, End
+from solver.load_path import LoadPath
+from solver.material import MooneyRivlin, Thread
+from solver.numerics import KINDS, NUMERICS_OF_MODEL, Numerics
+from solver.refusal import UnsolvableCase
+
+MODELS = tuple(NUMERICS_OF_MODEL)
+MESHED = {"membrane": "meridian", "solid": "section"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """One curve of one muscle by one model.
+
+    Attributes
+    ----------
+    fields_at : stops of the path at which fields (deformed shape, stress) are recorded too
+
+    Raises
+    ------
+    UnsolvableCase
+        If model, muscle and effects do not fit together.
+    """
+
+    muscle: Muscle
+    rubber: MooneyRivlin
+    thread: Thread | None
+    path: LoadPath
+    model: str
+    effects: Effects = field(default_factory=Effects)
+    numerics: Numerics = field(default_factory=Numerics)
+    fields_at: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.model not in MODELS:
+            raise UnsolvableCase("model", self.model, ", ".join(MODELS))
+        if self.muscle.braid is not None and self.thread is None:
+            raise UnsolvableCase("thread", None, "a thread, as the muscle has a braid")
+        if self.muscle.braid is None and self.model == "geometric":
+            raise UnsolvableCase("model", self.model, "another model: Eq. (1) needs a braid")
+        for stop in self.fields_at:
+            if stop not in self.path.stops:
+                raise UnsolvableCase("fields_at", stop, f"stops of the path, {self.path.stops}")
+        if self.fields_at and self.model not in MESHED:
+            raise UnsolvableCase("fields_at", self.fields_at, f"none: {self.model} has no fields")
+
+    def as_dict(self) -> dict[str, Any]:
+        """What the model reads, as plain values; ``from_dict`` reads it back."""
+        muscle = self.muscle.as_dict()
+        values: dict[str, Any] = {
+            "model": self.model,
+            "muscle": muscle,
+            "path": asdict(self.path),
+        }
+        clamped = self.model == "solid" and self.effects.end is End.CLAMP
+        if not clamped:
+            del muscle["cap_length"]
+        if self.model == "geometric":
+            del muscle["wall_thickness"], muscle["length"]
+            return values
+        values["rubber"] = asdict(self.rubber)
+        if self.muscle.braid is not None:
+            assert self.thread is not None  # see __post_init__
+            values["thread"] = asdict(self.thread)
+            values["effects"] = {"threads": self.effects.threads}
+        else:
+            values["effects"] = {}
+        if self.model == "solid":
+            values["effects"]["end"] = self.effects.end
+        else:
+            del values["rubber"]["kappa"]
+        if self.model == "cylinder":
+            del muscle["length"]
+        numerics = [*NUMERICS_OF_MODEL[self.model], *(["clamp"] if clamped else [])]
+        values["numerics"] = {name: asdict(getattr(self.numerics, name)) for name in numerics}
+        if self.fields_at:
+            values["fields_at"] = self.fields_at
+        return values
+
+    def canonical(self) -> str:
+        """Canonical JSON: sorted keys, shortest decimals, 20 for 20.0."""
+        return json.dumps(_canonical(self.as_dict()), sort_keys=True, allow_nan=False)
+
+    @property
+    def key(self) -> str:
+        """Name of the case in files: the first 16 hexadecimal digits of its SHA-256."""
+        return digest(self.canonical())
+
+    def mesh_spec(self) -> str | None:
+        """What shapes the mesh, as canonical JSON for ``python -m geometry``; None without one."""
+        if self.model not in MESHED:
+            return None
+        kind = MESHED[self.model]
+        values = self.as_dict()
+        muscle = values["muscle"]
+        if muscle["braid"] is not None:
+            # lead and thread number shape no section: muscles that differ there share a mesh
+            muscle["braid"] = {**muscle["braid"], "lead": 1.0, "threads": 1}
+        spec = {"kind": kind, "muscle": muscle, "mesh": values["numerics"][kind]}
+        if kind == "section":
+            spec["end"] = self.effects.end
+        return json.dumps(_canonical(spec), sort_keys=True, allow_nan=False)
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> "Case":
+        """The case of a plain mapping as ``as_dict`` makes it; what it leaves out is not read."""
+        unread = {"wall_thickness": 1.0, "length": 1.0}  # by the model; never part of the identity
+        muscle = dict(values["muscle"])
+        if values["model"] == "geometric":
+            unread["wall_thickness"] = muscle["braid"]["layer_diameters"][1]
+        muscle = {k: v for k, v in unread.items() if k not in muscle} | muscle
+        numerics = {
+            name: build(KINDS[name], entry, UnsolvableCase, f"numerics.{name}")
+            for name, entry in values.get("numerics", {}).items()
+        }
+        return cls(
+            muscle=Muscle.from_dict(muscle),
+            rubber=build(
+                MooneyRivlin, values.get("rubber", {"c10": 1, "c01": 0}), UnsolvableCase, "rubber"
+            ),
+            thread=build(Thread, values.get("thread", {"stiffness": 1}), UnsolvableCase, "thread")
+            if muscle["braid"]
+            else None,
+            path=build(LoadPath, values["path"], UnsolvableCase, "path"),
+            model=values["model"],
+            effects=build(Effects, values.get("effects", {}), UnsolvableCase, "effects"),
+            numerics=Numerics(**numerics),
+            fields_at=tuple(values.get("fields_at", ())),
+        )
+
+    @classmethod
+    def from_json(cls, text: str) -> "Case":
+        """The case of its canonical JSON."""
+        return cls.from_dict(json.loads(text))
+
+
+def digest(text: str) -> str:
+    """First 16 hexadecimal digits of the SHA-256 of a text: the name of a case or a mesh."""
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _canonical(value: Any) -> Any:
+    """The same plain value with whole numbers as integers, so that 20, 20.0 and 2e1 are one."""
+    if isinstance(value, Mapping):
+        return {key: _canonical(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_canonical(entry) for entry in value]
+    if isinstance(value, float) and value.is_integer():
+        return int(value)
+    return value

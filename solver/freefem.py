@@ -1,0 +1,155 @@
+"""Run a FreeFEM program of solver/edp. The only module that starts a process."""
+
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+EDP = Path(__file__).parent / "edp"
+DEBIAN_PLUGINS = Path("/usr/lib/freefem++")  # where Debian puts them; its program looks elsewhere
+LOG_TAIL = 15  # lines of the log that a message quotes
+MIB = 1024**2
+OWN_EXITS = {64: "an argument is missing"}
+FREEFEM_EXITS = {
+    1: "the program does not compile",
+    2: "a plugin is missing",
+    8: "it broke off while computing",
+}
+
+
+class FreeFemError(RuntimeError):
+    """FreeFEM cannot be run, or stopped with a non-zero status."""
+
+
+class OutOfTime(FreeFemError):
+    """The wall-time limit was reached."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """What a solve may use."""
+
+    wall_time: float  # s
+    memory: float  # MB of address space
+
+
+@dataclass(frozen=True, kw_only=True)
+class Usage:
+    """What a solve has used."""
+
+    seconds: float  # wall
+    cpu_seconds: float
+    peak_memory: float  # MB
+
+
+def executable() -> str:
+    """Path of FreeFEM.
+
+    Raises
+    ------
+    FreeFemError
+        If there is none on PATH.
+    """
+    found = shutil.which("FreeFem++")
+    if found is None:
+        raise FreeFemError("FreeFem++ is not on PATH; ./setup.sh installs it")
+    return found
+
+
+def command(program: str, flags: dict[str, str | float]) -> list[str]:
+    """Argument list: no graphics, quiet, the program, then its own flags without losing a digit."""
+    arguments = [executable(), "-nw", "-v", "0", str(EDP / program)]
+    for name, value in flags.items():
+        arguments += [f"-{name}", value if isinstance(value, str) else repr(value)]
+    return arguments
+
+
+def environment() -> dict[str, str]:
+    """The caller's environment, with our includes searched first and one thread.
+
+    FreeFEM looks for an include in the working directory and in FF_INCLUDEPATH, not beside the
+    program that includes it.
+    """
+    includes = [str(EDP), *filter(None, [os.environ.get("FF_INCLUDEPATH")])]
+    own = {
+        "FF_INCLUDEPATH": ";;".join(includes),
+        "OMP_NUM_THREADS": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+    }
+    if DEBIAN_PLUGINS.is_dir():
+        own["FF_LOADPATH"] = os.environ.get("FF_LOADPATH", str(DEBIAN_PLUGINS))
+    return os.environ | own
+
+
+def run(
+    program: str, flags: dict[str, str | float], workdir: Path, log: Path, limits: Limits
+) -> Usage:
+    """Run a program of solver/edp in ``workdir`` to its end; its output goes to ``log``.
+
+    Raises
+    ------
+    OutOfTime
+        If it runs longer than the limit; it and its children are gone then.
+    FreeFemError
+        If it cannot be started or ends with a non-zero status.
+    """
+    start = time.monotonic()
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with log.open("w") as stream:
+        process = subprocess.Popen(
+            command(program, flags),
+            cwd=workdir,
+            env=environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=stream,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            preexec_fn=lambda: _limit(limits),
+        )
+        try:
+            status = process.wait(limits.wall_time)
+        except subprocess.TimeoutExpired as late:
+            raise OutOfTime(f"stopped after {limits.wall_time:g} s, the limit") from late
+        finally:
+            _end(process)
+    if status != 0:
+        raise FreeFemError(explain(status))
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return Usage(
+        seconds=time.monotonic() - start,
+        cpu_seconds=after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
+        peak_memory=after.ru_maxrss / 1024,
+    )
+
+
+def explain(status: int) -> str:
+    """What an exit status of FreeFEM means."""
+    if status < 0:
+        return f"FreeFEM was ended by {signal.Signals(-status).name}"
+    meaning = (OWN_EXITS | FREEFEM_EXITS).get(status, "see its log")
+    return f"FreeFEM stopped with status {status}: {meaning}"
+
+
+def tail(log: Path) -> str:
+    """The last lines of a log."""
+    if not log.exists():
+        return ""
+    return "\n".join(log.read_text(errors="replace").splitlines()[-LOG_TAIL:])
+
+
+def _limit(limits: Limits) -> None:
+    """In the child, before FreeFEM starts: no more memory than allowed, and no core file."""
+    memory = int(limits.memory * MIB)
+    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Nothing of the process survives, whatever ended the wait."""
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()

@@ -1,0 +1,174 @@
+"""Load paths: what is held, what is swept, and the way there from the unloaded muscle.
+
+A state is fixed by two of four controls. A path holds one of them and sweeps another through
+its stops; between them nothing is skipped, because hyperelastic states do not depend on the way but
+Newton's method does.
+"""
+
+from dataclasses import dataclass, field
+from enum import IntEnum, StrEnum
+
+from geometry.refusal import is_number
+from solver.refusal import UnsolvableCase
+
+RAMP_STEPS = 4  # a load is brought from zero to its value in so many waypoints
+
+
+class Control(IntEnum):
+    """What can be prescribed; the numbers are those of solver/edp/control.idp."""
+
+    CONTRACTION = 0  # 1 - l/L
+    PRESSURE = 1  # MPa
+    FORCE = 2  # N, positive where the muscle pulls
+    VOLUME = 3  # mm3, enclosed by the whole muscle
+
+
+class PathKind(StrEnum):
+    """The three conditions of the paper."""
+
+    ISOBARIC = "isobaric"  # pressure held, contraction swept
+    ISOMETRIC = "isometric"  # contraction held, pressure swept
+    ISOTONIC = "isotonic"  # load held, pressure swept
+
+
+HELD = {
+    PathKind.ISOBARIC: Control.PRESSURE,
+    PathKind.ISOMETRIC: Control.CONTRACTION,
+    PathKind.ISOTONIC: Control.FORCE,
+}
+SWEPT = {
+    PathKind.ISOBARIC: Control.CONTRACTION,
+    PathKind.ISOMETRIC: Control.PRESSURE,
+    PathKind.ISOTONIC: Control.PRESSURE,
+}
+CONTRACTION_LIMITS = (-0.5, 0.6)
+
+
+@dataclass(frozen=True)
+class Waypoint:
+    """A state on the way: two controls and their targets. ``stop`` is its place in the record."""
+
+    first: Control
+    first_target: float
+    second: Control
+    second_target: float
+    stop: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadPath:
+    """One curve: a control held, another swept through ``stops``.
+
+    With ``zero_force`` the state of zero force on the curve is solved for as well (on an
+    isometric path the threshold pressure, on an isobaric one the free contraction); it is the
+    record's last state. Units by kind: contraction as a fraction, pressure in MPa, load in N.
+
+    Raises
+    ------
+    UnsolvableCase
+        If a number is not finite, a pressure negative, the stops not rising, or there are none.
+    """
+
+    kind: PathKind
+    held: float
+    stops: tuple[float, ...]
+    zero_force: bool = field(default=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "kind", PathKind(self.kind))
+        if not self.stops:
+            raise UnsolvableCase("stops", self.stops, "at least one value")
+        for name, control, values in (
+            ("held", HELD[self.kind], (self.held,)),
+            ("stops", SWEPT[self.kind], self.stops),
+        ):
+            for value in values:
+                _check(name, control, value)
+        if any(b <= a for a, b in zip(self.stops, self.stops[1:], strict=False)):
+            raise UnsolvableCase("stops", self.stops, "rising values, each given once")
+        if self.zero_force and self.kind is PathKind.ISOTONIC:
+            raise UnsolvableCase("zero_force", True, "an isobaric or isometric path")
+
+    @property
+    def states(self) -> int:
+        """Number of recorded states."""
+        return len(self.stops) + self.zero_force
+
+    def waypoints(self) -> list[Waypoint]:
+        """The way from the unloaded muscle through every stop."""
+        if self.kind is PathKind.ISOBARIC:
+            way = self._isobaric()
+        elif self.kind is PathKind.ISOMETRIC:
+            way = self._isometric()
+        else:
+            way = self._isotonic()
+        return way
+
+    def _zero_force(self) -> list[Waypoint]:
+        """Along the path to the state without force, if that is asked for."""
+        held = HELD[self.kind]
+        if not self.zero_force:
+            return []
+        return [Waypoint(held, self.held, Control.FORCE, 0.0, stop=len(self.stops))]
+
+    def _isobaric(self) -> list[Waypoint]:
+        """Pressure first, then shorter from the initial length; longer before, and back."""
+        way = _pressurise(self.held)
+        shorter = [(k, e) for k, e in enumerate(self.stops) if e >= 0]
+        longer = [(k, e) for k, e in enumerate(self.stops) if e < 0][::-1]
+        home: list[tuple[int | None, float]] = [(None, 0.0)] if longer and shorter else []
+        for stop, contraction in [*longer, *home, *shorter]:
+            way.append(
+                Waypoint(Control.PRESSURE, self.held, Control.CONTRACTION, contraction, stop)
+            )
+        return way + self._zero_force()
+
+    def _isometric(self) -> list[Waypoint]:
+        """Pressure first, then contraction, then the pressure down: a slack tube would crumple.
+
+        The state of zero force is approached from the highest pressure, because the force of a
+        muscle falls before it rises with pressure.
+        """
+        top = self.stops[-1]
+        way = _pressurise(top)
+        way += [
+            Waypoint(Control.PRESSURE, top, Control.CONTRACTION, self.held * k / RAMP_STEPS)
+            for k in range(1, RAMP_STEPS + 1)
+            if self.held != 0
+        ]
+        down = [
+            Waypoint(Control.CONTRACTION, self.held, Control.PRESSURE, p, stop)
+            for stop, p in reversed(list(enumerate(self.stops)))
+        ]
+        return [*way, down[0], *self._zero_force(), *down[1:]]
+
+    def _isotonic(self) -> list[Waypoint]:
+        """The load first, on the muscle without pressure, then the pressure up."""
+        way = [
+            Waypoint(Control.PRESSURE, 0.0, Control.FORCE, self.held * k / RAMP_STEPS)
+            for k in range(1, RAMP_STEPS + 1)
+        ]
+        way += [
+            Waypoint(Control.FORCE, self.held, Control.PRESSURE, p, stop)
+            for stop, p in enumerate(self.stops)
+        ]
+        return way
+
+
+def _pressurise(pressure: float) -> list[Waypoint]:
+    """From zero to a pressure at the initial length."""
+    return [
+        Waypoint(Control.CONTRACTION, 0.0, Control.PRESSURE, pressure * k / RAMP_STEPS)
+        for k in range(1, RAMP_STEPS + 1)
+        if pressure != 0
+    ]
+
+
+def _check(name: str, control: Control, value: float) -> None:
+    if not is_number(value):
+        raise UnsolvableCase(name, value, "a finite number")
+    low, high = CONTRACTION_LIMITS
+    if control is Control.CONTRACTION and not low <= value <= high:
+        raise UnsolvableCase(name, value, f"a contraction from {low} to {high}, as a fraction")
+    if control is Control.PRESSURE and value < 0:
+        raise UnsolvableCase(name, value, "a pressure >= 0 (MPa)")

@@ -1,0 +1,70 @@
+"""Numerical settings: what changes the error and the cost of a solve, but not the problem."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from geometry.meridian import MeridianMesh
+from geometry.refusal import is_count, is_number
+from geometry.section import SectionMesh
+from solver.refusal import UnsolvableCase
+
+ONE = {"unit": "1"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Newton:
+    """Solution control of solver/edp/control.idp.
+
+    Residuals are judged relative to the largest nodal force of any single term.
+    """
+
+    tolerance: float = field(default=1e-9, metadata=ONE)
+    iterations: int = field(default=15, metadata=ONE)  # at most, in one step
+    smallest_step: float = field(default=1 / 512, metadata=ONE)  # share of the way to a stop
+
+    def __post_init__(self) -> None:
+        if not (is_number(self.tolerance) and 1e-12 <= self.tolerance <= 1e-3):
+            raise UnsolvableCase("tolerance", self.tolerance, "from 1e-12 to 1e-3")
+        if not is_count(self.iterations):
+            raise UnsolvableCase("iterations", self.iterations, "an integer >= 1")
+        if not (is_number(self.smallest_step) and 0 < self.smallest_step <= 1):
+            raise UnsolvableCase("smallest_step", self.smallest_step, "more than 0, at most 1")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clamp:
+    """How a clamped end holds the tube: springs of density k min(s / ramp, 1)^2, s from the cap."""
+
+    ramp: float = field(default=2.0, metadata={"unit": "mm"})
+    thread_stiffness: float = field(default=200.0, metadata={"unit": "N/mm3"})  # on the layers
+    inner_stiffness: float = field(default=20.0, metadata={"unit": "N/mm3"})  # on the inner surface
+
+    def __post_init__(self) -> None:
+        for name in ("ramp", "thread_stiffness", "inner_stiffness"):
+            value = getattr(self, name)
+            if not (is_number(value) and value > 0):
+                raise UnsolvableCase(name, value, "a finite number > 0")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Numerics:
+    """Settings of all models; a case keeps those that its model reads."""
+
+    newton: Newton = field(default_factory=Newton)
+    meridian: MeridianMesh = field(default_factory=MeridianMesh)
+    section: SectionMesh = field(default_factory=SectionMesh)
+    clamp: Clamp = field(default_factory=Clamp)
+
+
+NUMERICS_OF_MODEL: dict[str, tuple[str, ...]] = {
+    "geometric": (),
+    "cylinder": (),
+    "membrane": ("newton", "meridian"),
+    "solid": ("newton", "section"),
+}
+KINDS: dict[str, Any] = {
+    "newton": Newton,
+    "meridian": MeridianMesh,
+    "section": SectionMesh,
+    "clamp": Clamp,
+}

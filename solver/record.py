@@ -1,0 +1,197 @@
+"""The HDF5 record of one solved case: its layout, writing, reading.
+
+Layout, version 1
+-----------------
+/            attrs: filetype "muscle-case", layout, key, case (canonical JSON, solver/case.py),
+             code (digest of the sources that solved it), status, reason, log (its end, if failed)
+/parameters  one scalar dataset per number of the case, in groups as in the JSON;
+             attrs: units
+/states      datasets of shape (state,) as in VARIABLES, attrs: units, long_name; and status.
+             States are in the order of the path's stops, then that of zero force if asked for.
+             What was not reached is NaN.
+/fields/<n>  of state n, where asked for. Membrane: meridian (node, 4) = R, Z, r, z [mm].
+             Solid: corners (3 triangles, 4) = R, Z, r, z [mm] and stress (3 triangles, 4) =
+             Cauchy rr, rz, zz, tt [MPa], three rows per triangle, discontinuous between them.
+
+A record is complete or absent: it is written aside and renamed. It holds no time and no date, so
+that the same case solved again gives the same bytes.
+"""
+
+import json
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.case import Case, digest
+from solver.status import CaseStatus, StateStatus
+
+FILETYPE, LAYOUT = "muscle-case", 1
+
+VARIABLES = {
+    # name: (unit, long name)
+    "contraction": ("1", "contraction, 1 - l/L"),
+    "pressure": ("MPa", "pressure"),
+    "force": ("N", "force of the muscle, positive where it pulls"),
+    "force_cap": ("N", "force from the reaction at the cap"),
+    "force_midplane": ("N", "force from the reaction at mid-length"),
+    "volume": ("mm3", "enclosed volume"),
+    "inner_diameter_inflated": ("mm", "inner diameter at mid-length"),
+    "outer_diameter": ("mm", "largest outer diameter anywhere"),
+    "equivalent_diameter": ("mm", "equivalent diameter, sign(F) sqrt(4 |F| / (pi p))"),
+    "thread_stretch_min": ("1", "smallest thread stretch"),
+    "thread_stretch_max": ("1", "largest thread stretch"),
+    "min_det_f": ("1", "smallest det F at a quadrature point"),
+    "margin": ("1", "smallest of what must stay positive (solver/edp/state.idp)"),
+    "energy": ("N mm", "strain energy of the muscle"),
+    "stiffness": ("N/mm", "dF/dl at fixed pressure"),
+    "unstable_modes": ("1", "unstable modes at fixed contraction and pressure"),
+    "residual": ("1", "largest residual, share of the largest nodal force"),
+    "iterations": ("1", "Newton iterations since the state before"),
+    "cutbacks": ("1", "steps given up since the state before"),
+}
+UNITS = {  # of /parameters
+    "muscle/inner_diameter": "mm",
+    "muscle/wall_thickness": "mm",
+    "muscle/length": "mm",
+    "muscle/cap_length": "mm",
+    "muscle/braid/lead": "mm",
+    "muscle/braid/layer_diameters": "mm",
+    "rubber/c10": "MPa",
+    "rubber/c01": "MPa",
+    "rubber/kappa": "MPa",
+    "thread/stiffness": "N",
+    "numerics/clamp/ramp": "mm",
+    "numerics/clamp/thread_stiffness": "N/mm3",
+    "numerics/clamp/inner_stiffness": "N/mm3",
+}
+PATH_UNITS = {  # of path/held and path/stops, by kind
+    "isobaric": ("MPa", "1"),
+    "isometric": ("1", "MPa"),
+    "isotonic": ("N", "MPa"),
+}
+
+
+class NoRecord(ValueError):
+    """A file that is no record, or not of this layout, or not of the case it should hold."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solution:
+    """What solving a case has given; it always has a status, whatever happened.
+
+    Attributes
+    ----------
+    states : arrays of shape (state,), as in VARIABLES; NaN where not reached
+    fields : state number -> name -> array, as in the layout
+    log : end of the solver's output where it failed
+    """
+
+    status: CaseStatus
+    reason: str
+    states: dict[str, NDArray[np.float64]]
+    state_status: list[StateStatus]
+    fields: dict[int, dict[str, NDArray[np.float64]]] = field(default_factory=dict)
+    log: str = ""
+
+
+def unreached(count: int) -> dict[str, NDArray[np.float64]]:
+    """States of which none was reached."""
+    return {name: np.full(count, np.nan) for name in VARIABLES}
+
+
+def write(path: Path, case: Case, solution: Solution) -> None:
+    """Write the record of a case, whole or not at all."""
+    import h5py
+
+    aside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        with h5py.File(aside, "w") as file:
+            file.attrs.update(
+                filetype=FILETYPE,
+                layout=LAYOUT,
+                key=case.key,
+                case=case.canonical(),
+                code=code_digest(),
+                status=solution.status.value,
+                reason=solution.reason,
+                log=solution.log,
+            )
+            _write_parameters(file.create_group("parameters"), case)
+            states = file.create_group("states")
+            for name, (unit, long_name) in VARIABLES.items():
+                data = states.create_dataset(name, data=solution.states[name])
+                data.attrs.update(units=unit, long_name=long_name)
+            states.create_dataset("status", data=[s.value.encode() for s in solution.state_status])
+            for number, arrays in sorted(solution.fields.items()):
+                group = file.create_group(f"fields/{number}")
+                for name, values in arrays.items():
+                    group.create_dataset(name, data=values)
+        os.replace(aside, path)
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def read(path: Path) -> tuple[Case, Solution]:
+    """Read a record.
+
+    Raises
+    ------
+    NoRecord
+        If the file is no record, is damaged, or has another layout.
+    """
+    import h5py
+
+    try:
+        with h5py.File(path) as file:
+            found = file.attrs.get("filetype"), file.attrs.get("layout")
+            if found != (FILETYPE, LAYOUT):
+                raise NoRecord(f"{path}: expected {FILETYPE}, layout {LAYOUT}; found {found}")
+            case = Case.from_json(file.attrs["case"])
+            if case.key != file.attrs["key"]:
+                raise NoRecord(f"{path}: its case is {case.key}, its key {file.attrs['key']}")
+            states = file["states"]
+            return case, Solution(
+                status=CaseStatus(file.attrs["status"]),
+                reason=file.attrs["reason"],
+                log=file.attrs["log"],
+                states={name: states[name][()] for name in VARIABLES},
+                state_status=[StateStatus(s.decode()) for s in states["status"][()]],
+                fields={
+                    int(number): {name: data[()] for name, data in group.items()}
+                    for number, group in file.get("fields", {}).items()
+                },
+            )
+    except (OSError, KeyError, RuntimeError) as error:
+        raise NoRecord(f"{path}: no readable record ({error})") from error
+
+
+def code_digest() -> str:
+    """Digest of the sources that decide a result: of this package and of geometry."""
+    root = Path(__file__).parent.parent
+    sources = sorted(
+        path
+        for package in ("geometry", "solver")
+        for path in (root / package).rglob("*")
+        if path.suffix in {".py", ".edp", ".idp"}
+    )
+    return digest("".join(f"{p.relative_to(root)}\n{p.read_text()}" for p in sources))
+
+
+def _write_parameters(group: Any, case: Case) -> None:
+    """One scalar (or list) dataset per number of the case, with its unit."""
+    values = json.loads(case.canonical())
+    held, stops = PATH_UNITS[values["path"]["kind"]]
+    units = UNITS | {"path/held": held, "path/stops": stops, "fields_at": stops}
+
+    def put(name: str, value: Any) -> None:
+        if isinstance(value, dict):
+            for key, entry in value.items():
+                put(f"{name}/{key}" if name else key, entry)
+        elif value is not None:
+            group.create_dataset(name, data=value).attrs["units"] = units.get(name, "1")
+
+    put("", values)

@@ -1,0 +1,198 @@
+"""Solve a case by the model it names; whatever happens, the result has a status."""
+
+import csv
+import math
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from solver import freefem, thread_law
+from solver.case import Case
+from solver.effects import End
+from solver.load_path import Waypoint
+from solver.record import VARIABLES, Solution, unreached
+from solver.status import CaseStatus, StateStatus, case_status, state_status
+
+FIELDS = {  # columns of fields_<waypoint>.txt, by model
+    "membrane": {"meridian": slice(0, 4)},
+    "solid": {"corners": slice(0, 4), "stress": slice(4, 8)},
+}
+
+
+def solve(
+    case: Case, mesh: Path | None, log: Path, limits: freefem.Limits
+) -> tuple[Solution, freefem.Usage | None]:
+    """Solve a case; the usage is None for models without FreeFEM."""
+    direct = _direct(case.model)
+    if direct is not None:
+        return _with_diameter(direct(case)), None
+    if mesh is None or not mesh.exists():
+        return failure(case, CaseStatus.MESH_FAILED, f"no mesh at {mesh}"), None
+    usage = None
+    with tempfile.TemporaryDirectory() as scratch:
+        work = Path(scratch)
+        way = case.path.waypoints()
+        (work / "composition.idp").write_text(composition(case))
+        (work / "waypoints.txt").write_text(waypoint_text(case, way))
+        status, reason = None, ""
+        try:
+            usage = freefem.run(
+                f"{case.model}.edp", flags(case, mesh.resolve()), work, log.resolve(), limits
+            )
+        except freefem.OutOfTime as error:
+            status, reason = CaseStatus.TIMEOUT, str(error)
+        except freefem.FreeFemError as error:
+            status, reason = CaseStatus.SOLVER_ERROR, str(error)
+        solution = collect(case, way, work, log, status, reason)
+    return _with_diameter(solution), usage
+
+
+def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solution:
+    """A solution without any state."""
+    count = case.path.states
+    return Solution(
+        status=status,
+        reason=reason,
+        states=unreached(count),
+        state_status=[StateStatus.NOT_REACHED] * count,
+        log=log,
+    )
+
+
+def composition(case: Case) -> str:
+    """The includes of a program: one per active effect."""
+    threads = case.effects.threads if case.muscle.braid else "none"
+    files = [f"threads_{threads}.idp"]
+    if case.model == "solid":
+        files.append(f"ends_{case.effects.end}.idp")
+    return "".join(f'include "{name}"\n' for name in files)
+
+
+def waypoint_text(case: Case, way: list[Waypoint]) -> str:
+    """The file that solver/edp/output.idp reads."""
+    wanted_fields = {case.path.stops.index(stop) for stop in case.fields_at}
+    lines = [str(len(way))]
+    for point in way:
+        wanted = 0 if point.stop is None else 2 if point.stop in wanted_fields else 1
+        lines.append(
+            f"{point.first:d} {float(point.first_target)!r} "
+            f"{point.second:d} {float(point.second_target)!r} {wanted}"
+        )
+    return "\n".join(lines) + "\n"
+
+
+def flags(case: Case, mesh: Path) -> dict[str, str | float]:
+    """Flags of solver/edp/parameters.idp and of the includes that are composed in."""
+    muscle, newton = case.muscle, case.numerics.newton
+    values: dict[str, str | float] = {
+        "mesh": str(mesh),
+        "waypoints": "waypoints.txt",
+        "inner_radius": muscle.inner_radius,
+        "outer_radius": muscle.outer_radius,
+        "half_length": muscle.length / 2,
+        "c10": case.rubber.c10,
+        "c01": case.rubber.c01,
+        "newton_tolerance": newton.tolerance,
+        "newton_limit": newton.iterations,
+        "smallest_step": newton.smallest_step,
+        "thread_layers": len(muscle.layer_radii),
+    }
+    radii, tangents, stiffness, slack = (1.0, 1.0), (1.0, 1.0), 0.0, 1.0  # read by no bare tube
+    if muscle.braid is not None:
+        assert case.thread is not None
+        radii = muscle.layer_radii[0], muscle.layer_radii[1]
+        inner, outer = muscle.braid.layer_angles
+        tangents = math.tan(inner), math.tan(outer)
+        stiffness = muscle.braid.threads * case.thread.stiffness
+        slack = thread_law.slack_width(case.thread)
+    values |= {
+        "layer_radius_1": radii[0],
+        "layer_radius_2": radii[1],
+        "tan_angle_1": tangents[0],
+        "tan_angle_2": tangents[1],
+        "layer_stiffness": stiffness,
+        "slack_width": slack,
+    }
+    if case.model == "solid":
+        values["kappa"] = case.rubber.kappa
+        if case.effects.end is End.CLAMP:
+            clamp = case.numerics.clamp
+            values |= {
+                "clamp_ramp": clamp.ramp,
+                "clamp_thread_stiffness": clamp.thread_stiffness,
+                "clamp_inner_stiffness": clamp.inner_stiffness,
+            }
+    return {k: v if isinstance(v, str | int) else float(v) for k, v in values.items()}
+
+
+def collect(
+    case: Case,
+    way: list[Waypoint],
+    work: Path,
+    log: Path,
+    status: CaseStatus | None,
+    reason: str,
+) -> Solution:
+    """What FreeFEM has left in its folder; ``status`` is None if it ended by itself."""
+    states = unreached(case.path.states)
+    fields = {}
+    for row in _rows(work / "states.csv"):
+        number = int(row["waypoint"])
+        stop = way[number].stop
+        assert stop is not None  # only waypoints with a stop are written
+        for name in VARIABLES.keys() & row.keys():
+            states[name][stop] = row[name]
+        field_file = work / f"fields_{number}.txt"
+        if field_file.exists():
+            table = np.loadtxt(field_file)
+            fields[stop] = {name: table[:, part] for name, part in FIELDS[case.model].items()}
+    each = state_status(case.path.kind, states)
+    if status is None:
+        status = case_status(each)
+        if status is CaseStatus.STALLED:
+            reason = (work / "reason.txt").read_text()
+        elif status is CaseStatus.INVALID_STATE:
+            count = sum(s is StateStatus.INVALID_STATE for s in each)
+            reason = f"{count} of {len(each)} states are turned inside out somewhere"
+    failed = status in (CaseStatus.SOLVER_ERROR, CaseStatus.TIMEOUT)
+    return Solution(
+        status=status,
+        reason=reason,
+        states=states,
+        state_status=each,
+        fields=fields,
+        log=freefem.tail(log) if failed else "",
+    )
+
+
+def _direct(model: str) -> Callable[[Case], Solution] | None:
+    """The solver of a model that needs no FreeFEM; imported only if it is the one."""
+    if model == "geometric":
+        from solver import geometric
+
+        return geometric.solve
+    if model == "cylinder":
+        from solver import cylinder
+
+        return cylinder.solve
+    return None
+
+
+def _rows(path: Path) -> list[dict[str, float]]:
+    """Rows of a table of numbers; the last is dropped if it was cut off."""
+    if not path.exists():
+        return []
+    with path.open() as file:
+        rows = [r for r in csv.DictReader(file) if None not in r.values()]
+    return [{name: float(value) for name, value in row.items()} for row in rows]
+
+
+def _with_diameter(solution: Solution) -> Solution:
+    """Adds the equivalent diameter, sign(F) sqrt(4 |F| / (pi p)) [mm]; NaN without pressure."""
+    states = solution.states
+    pressure = np.where(states["pressure"] > 0, states["pressure"], np.nan)
+    size = np.sqrt(4 * np.abs(states["force"]) / (np.pi * pressure))
+    states["equivalent_diameter"] = np.sign(states["force"]) * size
+    return solution

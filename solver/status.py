@@ -1,0 +1,61 @@
+"""What a state and a case can be, and the rules that decide it, in one place."""
+
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.load_path import PathKind
+
+
+class StateStatus(StrEnum):
+    """Of one recorded state."""
+
+    CONVERGED = "converged"
+    UNSTABLE = "unstable"  # in equilibrium, but the muscle would leave it
+    INVALID_STATE = "invalid_state"  # in equilibrium, but turned inside out somewhere
+    NOT_REACHED = "not_reached"
+
+
+class CaseStatus(StrEnum):
+    """Of a whole path."""
+
+    CONVERGED = "converged"  # every stop reached with a valid state
+    LIMIT_POINT = "limit_point"  # no equilibrium further on
+    STALLED = "stalled"  # Newton needs steps below the smallest; why is not known
+    INVALID_STATE = "invalid_state"  # every stop reached, but not every state is valid
+    MESH_FAILED = "mesh_failed"
+    TIMEOUT = "timeout"
+    SOLVER_ERROR = "solver_error"
+
+
+def state_status(kind: PathKind, states: dict[str, NDArray[np.float64]]) -> list[StateStatus]:
+    """Status of every state of a path.
+
+    Unstable modes are counted at fixed contraction and pressure. Under a dead load (isotonic) a
+    muscle whose force falls when it is drawn out is unstable as well.
+    """
+    reached = np.isfinite(states["force"])
+    valid = (states["min_det_f"] > 0) & (states["margin"] > 0)
+    modes = states["unstable_modes"] + (
+        (states["stiffness"] < 0) if kind is PathKind.ISOTONIC else 0
+    )
+    return [
+        StateStatus.NOT_REACHED
+        if not r
+        else StateStatus.INVALID_STATE
+        if not v
+        else StateStatus.UNSTABLE
+        if m > 0
+        else StateStatus.CONVERGED
+        for r, v, m in zip(reached, valid, modes, strict=True)
+    ]
+
+
+def case_status(states: list[StateStatus]) -> CaseStatus:
+    """Status of a path whose solver came to its end by itself."""
+    if StateStatus.NOT_REACHED in states:
+        return CaseStatus.STALLED
+    if StateStatus.INVALID_STATE in states:
+        return CaseStatus.INVALID_STATE
+    return CaseStatus.CONVERGED
