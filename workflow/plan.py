@@ -1,0 +1,186 @@
+"""From a study to its cases: pure, no file is read or written.
+
+A scene asks for curves. Curves of equal content (muscle, materials, model, effects, numerics, path
+and held value) are one case, with the stops of all scenes that ask for it; so every state is
+solved once, however many figures show it.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from geometry import section
+from solver.case import Case, digest
+from solver.load_path import LoadPath
+from workflow.config import Study
+from workflow.schema import HELD_KEY, SWEPT_KEY, Scene
+
+FIELDS = {"stress", "deformed_shape"}
+ZERO_FORCE = {"threshold_pressure", "free_contraction"}
+SUFFIX = {"membrane": "mesh", "solid": "msh"}  # of the mesh file, by model
+
+
+@dataclass(frozen=True, order=True)
+class Place:
+    """Where a curve stands in the dataset."""
+
+    group: str
+    muscle: str
+    model: str
+    variant: str
+    held: float
+
+    def __str__(self) -> str:
+        """As in messages: ``dmsp20 solid isobaric 0.3 MPa``."""
+        held = {
+            "isobaric": f"{self.held:g} MPa",
+            "isometric": f"{100 * self.held:g} %",
+            "isotonic": f"{self.held:g} N",
+        }[self.group]
+        variant = "" if self.variant == "default" else f" {self.variant}"
+        return f"{self.muscle} {self.model}{variant} {self.group} {held}"
+
+
+@dataclass(frozen=True)
+class PlannedCase:
+    """A case, the places that it fills and the scenes that ask for it; both sorted."""
+
+    case: Case
+    places: tuple[Place, ...]
+    scenes: tuple[str, ...]
+
+    @property
+    def label(self) -> str:
+        """What a user calls this case."""
+        others = len(self.places) - 1
+        return f"{self.places[0]}{f' (and {others} more)' if others else ''}"
+
+    @property
+    def mesh(self) -> str | None:
+        """File name of the mesh, None for a model without."""
+        spec = self.case.mesh_spec()
+        return f"{digest(spec)}.{SUFFIX[self.case.model]}" if spec else None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What there is to do.
+
+    Attributes
+    ----------
+    cases : by key, sorted by place
+    meshes : specification by file name
+    scenes : of every scene that has cases, the key of the case at each of its places
+    """
+
+    study: Study
+    cases: dict[str, PlannedCase]
+    meshes: dict[str, str]
+    scenes: dict[str, dict[Place, str]]
+
+
+@dataclass
+class _Wish:
+    """What scenes want of one curve."""
+
+    case: Case
+    stops: set[float] = field(default_factory=set)
+    fields_at: set[float] = field(default_factory=set)
+    zero_force: bool = False
+    places: set[Place] = field(default_factory=set)
+    scenes: set[str] = field(default_factory=set)
+
+    def add(self, scene: str, place: Place, case: Case) -> None:
+        self.stops.update(case.path.stops)
+        self.fields_at.update(case.fields_at)
+        self.zero_force |= case.path.zero_force
+        self.places.add(place)
+        self.scenes.add(scene)
+
+    def planned(self) -> PlannedCase:
+        path = replace(self.case.path, stops=tuple(sorted(self.stops)), zero_force=self.zero_force)
+        case = replace(self.case, path=path, fields_at=tuple(sorted(self.fields_at)))
+        return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)))
+
+
+def plan(study: Study) -> Plan:
+    """The cases of a study.
+
+    Raises
+    ------
+    StudyError
+        If a scene asks for a case that cannot be solved.
+    """
+    wishes: dict[str, _Wish] = {}
+    places: dict[str, dict[Place, str]] = {}
+    for name, scene in study.scenes.items():
+        for place, case in _curves(study, name, scene):
+            curve = _identity(case)
+            wishes.setdefault(curve, _Wish(case)).add(name, place, case)
+            places.setdefault(name, {})[place] = curve
+    planned = {curve: wish.planned() for curve, wish in wishes.items()}
+    ordered = sorted(planned.values(), key=lambda entry: entry.places)
+    return Plan(
+        study=study,
+        cases={entry.case.key: entry for entry in ordered},
+        meshes={entry.mesh: entry.case.mesh_spec() for entry in ordered if entry.mesh},
+        scenes={
+            name: {place: planned[curve].case.key for place, curve in sorted(found.items())}
+            for name, found in places.items()
+        },
+    )
+
+
+def _curves(study: Study, name: str, scene: Scene) -> Iterator[tuple[Place, Case]]:
+    """What one scene asks for."""
+    if scene.path is None:
+        return
+    for muscle in scene.muscles:
+        for model in scene.models:
+            for variant in scene.variants:
+                for held in scene.held:
+                    place = Place(scene.path, muscle, model, variant, held)
+                    yield place, _case(study, name, scene, place)
+
+
+def _case(study: Study, name: str, scene: Scene, place: Place) -> Case:
+    """The case that a scene asks for at a place."""
+    muscle, variant = study.muscles[place.muscle], study.variants[place.variant]
+    keys, checked = ("scenes", name), study.source.checked
+    # Eq. (1) has its zero of force at no pressure but 0, so no threshold
+    has_zero = place.model != "geometric" or place.group == "isobaric"
+    path = checked(
+        keys,
+        LoadPath,
+        {
+            "kind": scene.path,
+            "held": place.held,
+            "stops": scene.swept,
+            "zero_force": has_zero and bool(ZERO_FORCE.intersection(scene.quantities)),
+        },
+        {"held": HELD_KEY[scene.path], "stops": SWEPT_KEY[scene.path]},
+    )
+    case = checked(
+        keys,
+        Case,
+        {
+            "muscle": muscle.muscle,
+            "rubber": muscle.rubber,
+            "thread": muscle.thread,
+            "path": path,
+            "model": place.model,
+            "effects": variant.effects,
+            "numerics": variant.numerics,
+            "fields_at": scene.swept if FIELDS.intersection(scene.quantities) else (),
+        },
+        {"model": "models"},
+    )
+    if place.model == "solid":
+        mesh = {"mesh": variant.numerics.section, "end": variant.effects.end}
+        checked(("muscles", place.muscle), section.stations, {"muscle": muscle.muscle, **mesh})
+    return case
+
+
+def _identity(case: Case) -> str:
+    """What a case has in common with all that can be merged with it."""
+    path = LoadPath(kind=case.path.kind, held=case.path.held, stops=(0.0,))
+    return replace(case, path=path, fields_at=()).canonical()
