@@ -17,9 +17,9 @@ from scipy.optimize import root
 
 from solver import thread_law
 from solver.case import Case
-from solver.load_path import Control
+from solver.load_path import Control, Waypoint
 from solver.record import Solution, unreached
-from solver.status import case_status, state_status
+from solver.status import CaseStatus, case_status, state_status
 
 Array = NDArray[np.float64]
 WALL_POINTS = 16  # Gauss points through the wall: exact to rounding for any wall that is built
@@ -96,26 +96,40 @@ def solve(case: Case) -> Solution:
     """The curve of a case."""
     cylinder = Cylinder(case)
     states = unreached(case.path.states)
-    r, lz = cylinder.inner, 1.0
-    for way in case.path.waypoints():
-        kinds = way.first, way.second
-        goal = np.array(
-            [
-                way.first_target / cylinder.scale(way.first),
-                way.second_target / cylinder.scale(way.second),
-            ]
-        )
-        found = _walk(cylinder, kinds, goal, r, lz)
-        if found is None:
+    reason = ""
+    for way in case.path.ways():
+        reason = _follow(cylinder, way, states)
+        if not reason:
             break
-        r, lz = found
-        if way.stop is not None:
-            _record(cylinder, states, way.stop, r, lz)
     checks = states | {"unstable_modes": np.zeros(case.path.states)}
     status = state_status(case.path.kind, checks)
     outcome = case_status(status)
-    reason = "" if outcome == "converged" else f"no state found beyond {way}"
-    return Solution(status=outcome, reason=reason, states=states, state_status=status)
+    return Solution(
+        status=outcome,
+        reason="" if outcome is CaseStatus.CONVERGED else reason,
+        states=states,
+        state_status=status,
+    )
+
+
+def _follow(cylinder: Cylinder, way: list[Waypoint], states: dict[str, Array]) -> str:
+    """Record the stops of a way; where it could not be followed to its end, say where it ended."""
+    r, lz = cylinder.inner, 1.0
+    for point in way:
+        kinds = point.first, point.second
+        targets = np.array([point.first_target, point.second_target])
+        scales = np.array([cylinder.scale(kind) for kind in kinds])
+        found = _walk(cylinder, kinds, targets / scales, r, lz)
+        if found is None:
+            pressure, force = cylinder.pressure_and_force(r, lz)
+            return (
+                f"no state found beyond contraction {1 - lz:g}, pressure {pressure:g} MPa, "
+                f"force {force:g} N"
+            )
+        r, lz = found
+        if point.stop is not None:
+            _record(cylinder, states, point.stop, r, lz)
+    return ""
 
 
 def _walk(
@@ -159,6 +173,7 @@ def _record(cylinder: Cylinder, states: dict[str, Array], stop: int, r: float, l
         "inner_diameter_inflated": 2 * r,
         "outer_diameter": 2 * outer,
         "min_det_f": 1.0,  # incompressible by construction
+        "min_det_f_nodes": 1.0,
         "margin": min(lz, r / cylinder.inner),
         "stiffness": _stiffness(cylinder, r, lz),
     }

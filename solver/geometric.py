@@ -63,6 +63,7 @@ def solve(case: Case) -> Solution:
     # what this model has no opinion on cannot make a state invalid or unstable
     checks = states | {
         "min_det_f": np.ones_like(pressure),
+        "min_det_f_nodes": np.ones_like(pressure),
         "margin": np.ones_like(pressure),
         "unstable_modes": np.zeros_like(pressure),
         "stiffness": np.ones_like(pressure),

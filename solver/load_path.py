@@ -94,15 +94,18 @@ class LoadPath:
         """Number of recorded states."""
         return len(self.stops) + self.zero_force
 
-    def waypoints(self) -> list[Waypoint]:
-        """The way from the unloaded muscle through every stop."""
+    def ways(self) -> list[list[Waypoint]]:
+        """Ways from the unloaded muscle through every stop; a second for what the first missed.
+
+        Only an isometric path has a second way. A slack tube would crumple, so it is pressurised
+        first and the pressure then lowered; but where the highest pressure cannot be reached, what
+        lies below it can from the side of the slack tube.
+        """
         if self.kind is PathKind.ISOBARIC:
-            way = self._isobaric()
-        elif self.kind is PathKind.ISOMETRIC:
-            way = self._isometric()
-        else:
-            way = self._isotonic()
-        return way
+            return [self._isobaric()]
+        if self.kind is PathKind.ISOMETRIC:
+            return [self._isometric_falling(), self._isometric_rising()]
+        return [self._isotonic()]
 
     def _zero_force(self) -> list[Waypoint]:
         """Along the path to the state without force, if that is asked for."""
@@ -123,24 +126,43 @@ class LoadPath:
             )
         return way + self._zero_force()
 
-    def _isometric(self) -> list[Waypoint]:
-        """Pressure first, then contraction, then the pressure down: a slack tube would crumple.
+    def _isometric_falling(self) -> list[Waypoint]:
+        """Pressure first, then contraction, then the pressure down.
 
         The state of zero force is approached from the highest pressure, because the force of a
         muscle falls before it rises with pressure.
         """
         top = self.stops[-1]
-        way = _pressurise(top)
-        way += [
-            Waypoint(Control.PRESSURE, top, Control.CONTRACTION, self.held * k / RAMP_STEPS)
-            for k in range(1, RAMP_STEPS + 1)
-            if self.held != 0
-        ]
         down = [
             Waypoint(Control.CONTRACTION, self.held, Control.PRESSURE, p, stop)
             for stop, p in reversed(list(enumerate(self.stops)))
         ]
-        return [*way, down[0], *self._zero_force(), *down[1:]]
+        return [
+            *_pressurise(top),
+            *self._contract(top),
+            down[0],
+            *self._zero_force(),
+            *down[1:],
+        ]
+
+    def _isometric_rising(self) -> list[Waypoint]:
+        """Contraction first, then the pressure up."""
+        return [
+            *self._contract(0.0),
+            *(
+                Waypoint(Control.CONTRACTION, self.held, Control.PRESSURE, p, stop)
+                for stop, p in enumerate(self.stops)
+            ),
+            *self._zero_force(),
+        ]
+
+    def _contract(self, pressure: float) -> list[Waypoint]:
+        """From the initial length to the held contraction, at a pressure."""
+        return [
+            Waypoint(Control.PRESSURE, pressure, Control.CONTRACTION, self.held * k / RAMP_STEPS)
+            for k in range(1, RAMP_STEPS + 1)
+            if self.held != 0
+        ]
 
     def _isotonic(self) -> list[Waypoint]:
         """The load first, on the muscle without pressure, then the pressure up."""

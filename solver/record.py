@@ -45,6 +45,7 @@ VARIABLES = {
     "thread_stretch_min": ("1", "smallest thread stretch"),
     "thread_stretch_max": ("1", "largest thread stretch"),
     "min_det_f": ("1", "smallest det F at a quadrature point"),
+    "min_det_f_nodes": ("1", "smallest det F at a corner of an element"),
     "margin": ("1", "smallest of what must stay positive (solver/edp/state.idp)"),
     "energy": ("N mm", "strain energy of the muscle"),
     "stiffness": ("N/mm", "dF/dl at fixed pressure"),

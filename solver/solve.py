@@ -4,9 +4,11 @@ import csv
 import math
 import tempfile
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver import freefem, thread_law
 from solver.case import Case
@@ -30,23 +32,53 @@ def solve(
         return _with_diameter(direct(case)), None
     if mesh is None or not mesh.exists():
         return failure(case, CaseStatus.MESH_FAILED, f"no mesh at {mesh}"), None
-    usage = None
+    states = unreached(case.path.states)
+    fields: dict[int, dict[str, NDArray[np.float64]]] = {}
+    usages = []
+    for way in case.path.ways():
+        end = _follow(case, way, mesh, log, limits, states, fields)
+        usages += [end.usage] if end.usage else []
+        if end.status is not None or np.isfinite(states["force"]).all():
+            break
+    return _with_diameter(_judge(case, states, fields, end, log)), _total(usages)
+
+
+@dataclass(frozen=True)
+class _End:
+    """How one run of FreeFEM ended; ``status`` is None if by itself."""
+
+    status: CaseStatus | None
+    reason: str
+    usage: freefem.Usage | None
+
+
+def _follow(
+    case: Case,
+    way: list[Waypoint],
+    mesh: Path,
+    log: Path,
+    limits: freefem.Limits,
+    states: dict[str, NDArray[np.float64]],
+    fields: dict[int, dict[str, NDArray[np.float64]]],
+) -> _End:
+    """Run FreeFEM along a way and add what it reaches to ``states`` and ``fields``."""
+    status, reason, usage = None, "", None
     with tempfile.TemporaryDirectory() as scratch:
         work = Path(scratch)
-        way = case.path.waypoints()
         (work / "composition.idp").write_text(composition(case))
         (work / "waypoints.txt").write_text(waypoint_text(case, way))
-        status, reason = None, ""
+        given = flags(case, mesh.resolve())
         try:
-            usage = freefem.run(
-                f"{case.model}.edp", flags(case, mesh.resolve()), work, log.resolve(), limits
-            )
+            usage = freefem.run(f"{case.model}.edp", given, work, log.resolve(), limits)
         except freefem.OutOfTime as error:
             status, reason = CaseStatus.TIMEOUT, str(error)
         except freefem.FreeFemError as error:
             status, reason = CaseStatus.SOLVER_ERROR, str(error)
-        solution = collect(case, way, work, log, status, reason)
-    return _with_diameter(solution), usage
+        _collect(case, way, work, states, fields)
+        ended = work / "reason.txt"
+        if status is None and ended.exists():
+            reason = ended.read_text().strip()
+    return _End(status, reason, usage)
 
 
 def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solution:
@@ -127,17 +159,14 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
     return {k: v if isinstance(v, str | int) else float(v) for k, v in values.items()}
 
 
-def collect(
+def _collect(
     case: Case,
     way: list[Waypoint],
     work: Path,
-    log: Path,
-    status: CaseStatus | None,
-    reason: str,
-) -> Solution:
-    """What FreeFEM has left in its folder; ``status`` is None if it ended by itself."""
-    states = unreached(case.path.states)
-    fields = {}
+    states: dict[str, NDArray[np.float64]],
+    fields: dict[int, dict[str, NDArray[np.float64]]],
+) -> None:
+    """Read what FreeFEM has left in its folder."""
     for row in _rows(work / "states.csv"):
         number = int(row["waypoint"])
         stop = way[number].stop
@@ -148,22 +177,41 @@ def collect(
         if field_file.exists():
             table = np.loadtxt(field_file)
             fields[stop] = {name: table[:, part] for name, part in FIELDS[case.model].items()}
+
+
+def _judge(
+    case: Case,
+    states: dict[str, NDArray[np.float64]],
+    fields: dict[int, dict[str, NDArray[np.float64]]],
+    end: _End,
+    log: Path,
+) -> Solution:
+    """Status of every state and of the case, with the reason in words."""
     each = state_status(case.path.kind, states)
-    if status is None:
-        status = case_status(each)
-        if status is CaseStatus.STALLED:
-            reason = (work / "reason.txt").read_text()
-        elif status is CaseStatus.INVALID_STATE:
-            count = sum(s is StateStatus.INVALID_STATE for s in each)
-            reason = f"{count} of {len(each)} states are turned inside out somewhere"
-    failed = status in (CaseStatus.SOLVER_ERROR, CaseStatus.TIMEOUT)
+    limited = end.reason.startswith(("fold", "asymptote"))
+    status = end.status or case_status(each, limited)
+    reason = "" if status is CaseStatus.CONVERGED else end.reason
+    if status is CaseStatus.INVALID_STATE:
+        count = sum(s is StateStatus.INVALID_STATE for s in each)
+        reason = f"{count} of {len(each)} states are turned inside out somewhere"
     return Solution(
         status=status,
         reason=reason,
         states=states,
         state_status=each,
         fields=fields,
-        log=freefem.tail(log) if failed else "",
+        log=freefem.tail(log) if end.status else "",
+    )
+
+
+def _total(usages: list[freefem.Usage]) -> freefem.Usage | None:
+    """Of several runs together; None if there was none that ended by itself."""
+    if not usages:
+        return None
+    return freefem.Usage(
+        seconds=sum(u.seconds for u in usages),
+        cpu_seconds=sum(u.cpu_seconds for u in usages),
+        peak_memory=max(u.peak_memory for u in usages),
     )
 
 

@@ -36,7 +36,8 @@ def state_status(kind: PathKind, states: dict[str, NDArray[np.float64]]) -> list
     muscle whose force falls when it is drawn out is unstable as well.
     """
     reached = np.isfinite(states["force"])
-    valid = (states["min_det_f"] > 0) & (states["margin"] > 0)
+    smallest = [states[name] for name in ("min_det_f", "min_det_f_nodes", "margin")]
+    valid = np.min(smallest, axis=0) > 0
     modes = states["unstable_modes"] + (
         (states["stiffness"] < 0) if kind is PathKind.ISOTONIC else 0
     )
@@ -52,10 +53,13 @@ def state_status(kind: PathKind, states: dict[str, NDArray[np.float64]]) -> list
     ]
 
 
-def case_status(states: list[StateStatus]) -> CaseStatus:
-    """Status of a path whose solver came to its end by itself."""
+def case_status(states: list[StateStatus], limited: bool = False) -> CaseStatus:
+    """Status of a path whose solver came to its end by itself.
+
+    ``limited`` says that the branch of states was followed to an extremum of the swept control.
+    """
     if StateStatus.NOT_REACHED in states:
-        return CaseStatus.STALLED
+        return CaseStatus.LIMIT_POINT if limited else CaseStatus.STALLED
     if StateStatus.INVALID_STATE in states:
         return CaseStatus.INVALID_STATE
     return CaseStatus.CONVERGED
