@@ -1,0 +1,149 @@
+"""What several tests share: the muscle of the paper and its materials, and solves kept by case.
+
+A test that needs FreeFEM on a machine without it ends with an error that says so; it is not skipped.
+"""
+
+import csv
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+from geometry import meridian, section
+from geometry.muscle import Braid, Muscle
+from solver import freefem
+from solver.case import Case, digest
+from solver.load_path import LoadPath, Waypoint
+from solver.material import MooneyRivlin, Thread
+from solver.record import Solution
+from solver.solve import composition, flags, solve, waypoint_text
+
+LIMITS = freefem.Limits(wall_time=60, memory=4000)
+Rows = list[dict[str, float]]
+
+
+@pytest.fixture(scope="session")
+def muscle() -> Muscle:
+    """DMSP-20-300 of the paper, spacing 2.4 mm."""
+    return Muscle(
+        inner_diameter=20,
+        wall_thickness=2,
+        length=300,
+        braid=Braid(lead=144, threads=60, layer_diameters=(20.6, 21.8)),
+    )
+
+
+@pytest.fixture(scope="session")
+def bare_tube() -> Muscle:
+    """The tube of the muscle, without braid; short, as it is used where nothing changes along it."""
+    return Muscle(inner_diameter=20, wall_thickness=2, length=20, braid=None)
+
+
+@pytest.fixture(scope="session")
+def nbr() -> MooneyRivlin:
+    return MooneyRivlin(c10=0.345083, c01=0.083805)
+
+
+@pytest.fixture(scope="session")
+def silicone() -> MooneyRivlin:
+    return MooneyRivlin(c10=0.028, c01=0.018)
+
+
+@pytest.fixture(scope="session")
+def thread() -> Thread:
+    return Thread(stiffness=315)
+
+
+@pytest.fixture(scope="session")
+def make_case(muscle: Muscle, nbr: MooneyRivlin, thread: Thread) -> Callable[..., Case]:
+    """A case of the normal muscle at 0.3 MPa and 10 %; keywords are fields of Case to change."""
+
+    def make(**changes) -> Case:
+        values = {
+            "muscle": muscle,
+            "rubber": nbr,
+            "thread": thread,
+            "path": LoadPath(kind="isobaric", held=0.3, stops=(0.1,)),
+            "model": "membrane",
+        } | changes
+        if values["muscle"].braid is None:
+            values["thread"] = None
+        return Case(**values)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def mesh_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Case], Path | None]:
+    """The mesh of a case; None for a model without one. Made once for all cases that share it."""
+    folder = tmp_path_factory.mktemp("meshes")
+
+    def mesh(case: Case) -> Path | None:
+        spec = case.mesh_spec()
+        if spec is None:
+            return None
+        kind = json.loads(spec)["kind"]
+        path = folder / f"{digest(spec)}{'.mesh' if kind == 'meridian' else '.msh'}"
+        if not path.exists():
+            if kind == "meridian":
+                meridian.write(case.muscle, case.numerics.meridian, path)
+            else:
+                section.write(case.muscle, case.numerics.section, case.effects.end, path)
+        return path
+
+    return mesh
+
+
+@pytest.fixture(scope="session")
+def solve_case(
+    mesh_of: Callable[[Case], Path | None], tmp_path_factory: pytest.TempPathFactory
+) -> Callable[[Case], Solution]:
+    """Solves a case as ``python -m solver`` does; one that was solved before is remembered."""
+    folder = tmp_path_factory.mktemp("solves")
+    known: dict[str, Solution] = {}
+
+    def solution(case: Case) -> Solution:
+        if case.key not in known:
+            if case.mesh_spec() is not None:
+                freefem.executable()  # raises: FreeFEM is not there
+            log = folder / f"{case.key}.log"
+            known[case.key], _ = solve(case, mesh_of(case), log, LIMITS)
+        return known[case.key]
+
+    return solution
+
+
+@pytest.fixture(scope="session")
+def run_program(
+    mesh_of: Callable[[Case], Path | None], tmp_path_factory: pytest.TempPathFactory
+) -> Callable[..., Path]:
+    """Runs a FreeFEM program with flags, effects and waypoints of a case; gives its folder."""
+
+    def run(
+        case: Case, program: Path | None = None, way: Sequence[Waypoint] = (), **more: float
+    ) -> Path:
+        work = tmp_path_factory.mktemp(case.key)
+        (work / "composition.idp").write_text(composition(case))
+        (work / "waypoints.txt").write_text(waypoint_text(case, list(way)))
+        name = f"{case.model}.edp" if program is None else str(program)
+        mesh = mesh_of(case)
+        assert mesh is not None
+        try:
+            freefem.run(name, flags(case, mesh) | more, work, work / "log", LIMITS)
+        except freefem.FreeFemError as error:
+            raise AssertionError(f"{error}\n{freefem.tail(work / 'log')}") from error
+        return work
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def walk(run_program: Callable[..., Path]) -> Callable[..., Rows]:
+    """Walks a FreeFEM model along any waypoints; gives the rows of states.csv."""
+
+    def rows(case: Case, way: Sequence[Waypoint]) -> Rows:
+        with (run_program(case, way=way) / "states.csv").open() as file:
+            return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+
+    return rows

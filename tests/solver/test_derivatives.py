@@ -1,0 +1,76 @@
+"""Every hand-written derivative of the FreeFEM models against central differences.
+
+Also with the two ends of the thread law, slack and taut, in one state.
+"""
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from geometry.section import SectionMesh
+from solver.effects import Effects
+from solver.numerics import Numerics
+
+EDP = Path(__file__).parent / "edp"
+COARSE = Numerics(section=SectionMesh(cap_step=2, body_step=4, growth=2))
+
+
+@pytest.fixture
+def errors(run_program, monkeypatch):
+    """Relative errors by name, and facts about the state, of one model at one random state."""
+    monkeypatch.setenv("FF_INCLUDEPATH", str(EDP))
+
+    def run(case, **state):
+        program = EDP / f"finite_differences_{case.model}.edp"
+        with (run_program(case, program, **state) / "errors.csv").open() as file:
+            return {row["name"]: float(row["value"]) for row in csv.DictReader(file)}
+
+    return run
+
+
+STATES = [
+    pytest.param({"contraction": 0.0, "pressure": 0.3}, id="initial length"),
+    pytest.param({"contraction": 0.15, "pressure": 0.6}, id="contracted"),
+    pytest.param({"contraction": -0.05, "pressure": 0.0}, id="drawn out"),
+]
+
+
+def check(found, *, tolerance: float) -> None:
+    facts = {n: found.pop(n) for n in ("margin", "thread_stretch_min", "thread_stretch_max")}
+    assert facts["margin"] > 0.1, "the random state is valid"
+    wrong = {name: error for name, error in found.items() if not error < tolerance}
+    assert not wrong, f"derivatives that differ from differences: {wrong}"
+
+
+@pytest.mark.parametrize("state", STATES)
+@pytest.mark.parametrize("threads", ["tension_only", "two_way"])
+def test_membrane(make_case, errors, threads, state):
+    found = errors(
+        make_case(model="membrane", effects=Effects(threads=threads)),
+        amplitude=0.05,
+        multiplier=0.0,
+        **state,
+    )
+    check(found, tolerance=1e-6)
+
+
+@pytest.mark.parametrize("state", STATES)
+@pytest.mark.parametrize("threads", ["tension_only", "two_way"])
+@pytest.mark.parametrize("end", ["clamp", "butt", "sliding"])
+def test_solid(make_case, errors, end, threads, state):
+    case = make_case(model="solid", effects=Effects(end=end, threads=threads), numerics=COARSE)
+    check(errors(case, amplitude=0.02, multiplier=0.1, **state), tolerance=1e-6)
+
+
+@pytest.mark.parametrize("end", ["clamp", "butt", "sliding"])
+def test_bare_solid(make_case, bare_tube, errors, end):
+    case = make_case(model="solid", muscle=bare_tube, effects=Effects(end=end), numerics=COARSE)
+    found = errors(case, amplitude=0.02, multiplier=0.1, contraction=0.1, pressure=0.05)
+    check(found, tolerance=1e-6)
+
+
+def test_bare_membrane(make_case, bare_tube, errors):
+    case = make_case(model="membrane", muscle=bare_tube)
+    found = errors(case, amplitude=0.02, multiplier=0.0, contraction=0.1, pressure=0.05)
+    check(found, tolerance=1e-6)
