@@ -77,6 +77,16 @@ class Plan:
     meshes: dict[str, str]
     scenes: dict[str, dict[Place, str]]
 
+    def digest(self, scene: str | None = None) -> str:
+        """Digest of all that a scene (None: the dataset) takes from the study but its cases."""
+        names = self.scenes if scene is None else [scene]
+        places = sorted({entry for name in names for entry in self.scenes.get(name, {}).items()})
+        muscles = {place.muscle for place, _ in places}
+        asked = None if scene is None else self.study.scenes[scene]
+        muscles.update(asked.muscles if asked else ())
+        made_of = [(name, self.study.muscles[name]) for name in sorted(muscles)]
+        return digest(repr((places, made_of, asked)))
+
 
 @dataclass
 class _Wish:

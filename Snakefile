@@ -1,0 +1,29 @@
+# Settings become cases, a case becomes a mesh and a solve, solves become one labelled dataset, the
+# dataset becomes figures. Files are in the order in which things run.
+#
+#   snakemake --cores 2                                         the study of the paper
+#   snakemake --cores 2 --config study=config/smoke/study.yaml  another study
+from snakemake.utils import min_version
+
+min_version("9.0")
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/mesh.smk"
+include: "workflow/rules/solve.smk"
+include: "workflow/rules/gather.smk"
+include: "workflow/rules/figures.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        figures(),
+        "results/dataset.nc",
+        "results/complete.txt",
+
+
+rule dataset:
+    input:
+        "results/dataset.nc",
+        "results/tables/failures.csv",

@@ -1,0 +1,132 @@
+"""The programs of the workflow: ``python -m workflow --help``.
+
+Every rule of Snakemake calls one of these or those of geometry and solver. Whatever is wrong with
+the input ends with status 1 and a message of a few lines.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from workflow.study_error import StudyError
+
+STUDY = Path("config/config.yaml")
+DATASET = Path("results/dataset.nc")
+FAILURES = Path("results/tables/failures.csv")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Parse the command line and run one program."""
+    given = _parser().parse_args(arguments)
+    try:
+        return given.program(given)
+    except StudyError as error:
+        print(error, file=sys.stderr)
+        return 1
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m workflow", description=__doc__)
+    programs = parser.add_subparsers(required=True, metavar="PROGRAM")
+
+    def add(program, summary: str, *, study: bool = True) -> argparse.ArgumentParser:
+        entry = programs.add_parser(program.__name__.strip("_"), help=summary, description=summary)
+        entry.set_defaults(program=program)
+        if study:
+            entry.add_argument("--study", type=Path, default=STUDY)
+        return entry
+
+    entry = add(_gather, "Write the dataset and the table of failures from all records.")
+    entry.add_argument("--dataset", type=Path, default=DATASET)
+    entry.add_argument("--failures", type=Path, default=FAILURES)
+    entry = add(_figure, "Draw the figure of a scene and write its numbers.")
+    entry.add_argument("--scene", required=True)
+    entry.add_argument("--output", type=Path, required=True, help=".png; .svg and .csv beside it")
+    add(_explain, "Say which cases the scenes ask for, and which they share.")
+    add(_cases, "List the cases: key, status of the record, label.")
+    entry = add(_failures, "List what failed; status 1 if anything did.", study=False)
+    entry.add_argument("--table", type=Path, default=FAILURES)
+    entry = add(_retry, "Delete the records of failed cases, so that they are solved again.")
+    return parser
+
+
+def _plan(given: argparse.Namespace):
+    from workflow.config import load
+    from workflow.plan import plan
+
+    return plan(load(given.study))
+
+
+def _gather(given: argparse.Namespace) -> int:
+    from workflow import dataset, failures, records
+
+    plan = _plan(given)
+    curves = records.curves_of_study(plan)
+    dataset.write(dataset.build(curves, plan.study.muscles), given.dataset)
+    failures.write(plan, {curve.key: curve.solution for curve in curves}, given.failures)
+    return 0
+
+
+def _figure(given: argparse.Namespace) -> int:
+    from workflow import figure
+
+    figure.make(_plan(given), given.scene, given.output)
+    return 0
+
+
+def _explain(given: argparse.Namespace) -> int:
+    plan = _plan(given)
+    for name, places in plan.scenes.items():
+        print(f"{name}: {len(set(places.values()))} cases")
+        for place, key in places.items():
+            case = plan.cases[key]
+            others = [scene for scene in case.scenes if scene != name]
+            stops = f"{len(case.case.path.stops)} stops"
+            print(f"  {key}  {place}, {stops}" + (f"; also {', '.join(others)}" if others else ""))
+    return 0
+
+
+def _cases(given: argparse.Namespace) -> int:
+    plan = _plan(given)
+    for key, case in plan.cases.items():
+        print(f"{key}  {_status(plan, key):13}  {case.label}")
+    return 0
+
+
+def _status(plan, key: str) -> str:
+    """Status in the record of a case, or why there is none."""
+    from workflow import records
+
+    if not records.path_of(key).exists():
+        return "not solved"
+    try:
+        return records.read(plan, [key])[key][1].status.value
+    except StudyError:
+        return "damaged"
+
+
+def _failures(given: argparse.Namespace) -> int:
+    from workflow import failures
+
+    if not given.table.exists():
+        raise StudyError(f"{given.table}: there is no such table; run snakemake")
+    text, failed = failures.report(given.table)
+    if text:
+        print(text, file=sys.stderr if failed else sys.stdout)
+    return 1 if failed else 0
+
+
+def _retry(given: argparse.Namespace) -> int:
+    from workflow import records
+
+    plan = _plan(given)
+    for key, case in plan.cases.items():
+        status = _status(plan, key)
+        if status not in ("converged", "limit_point", "not solved"):
+            records.path_of(key).unlink()
+            print(f"will be solved again (was {status}): {case.label}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,40 @@
+# Records -> dataset and table of failures.
+#
+#   in   all records of the study; the reference maps
+#   out  results/dataset.nc             layout: workflow/dataset.py
+#        results/tables/failures.csv    what did not work out; often a header only
+#        results/complete.txt           if no case failed; else the run ends with an error here
+
+
+rule gather:
+    input:
+        records=[record_of(case) for case in PLAN.cases],
+        reference=sources("config/reference/*.csv"),
+        sources=sources("workflow/*.py"),
+    output:
+        dataset="results/dataset.nc",
+        failures="results/tables/failures.csv",
+    log:
+        "results/logs/gather.log",
+    params:
+        plan=PLAN.digest(),
+    message:
+        "Gathering the records of all cases"
+    shell:
+        "{PYTHON} -m workflow gather --study {STUDY:q}"
+        " --dataset {output.dataset:q} --failures {output.failures:q} 2> {log:q}"
+
+
+rule complete:
+    input:
+        figures=figures(),
+        dataset="results/dataset.nc",
+        failures="results/tables/failures.csv",
+    output:
+        touch("results/complete.txt"),
+    log:
+        "results/logs/complete.log",
+    message:
+        "Checking that no case failed"
+    shell:
+        "{PYTHON} -m workflow failures --table {input.failures:q} 2> {log:q}"
