@@ -12,7 +12,7 @@ from typing import Any
 
 from geometry.muscle import Muscle
 from geometry.refusal import build
-from solver.effects import Effects, End
+from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin, Thread
 from solver.numerics import KINDS, NUMERICS_OF_MODEL, Numerics
@@ -85,7 +85,9 @@ class Case:
             del values["rubber"]["kappa"]
         if self.model == "cylinder":
             del muscle["length"]
-        numerics = [*NUMERICS_OF_MODEL[self.model], *(["clamp"] if clamped else [])]
+        slackens = self.muscle.braid is not None and self.effects.threads is ThreadLaw.TENSION_ONLY
+        numerics = [*NUMERICS_OF_MODEL[self.model]]
+        numerics += ["clamp"] * clamped + ["slack"] * slackens
         values["numerics"] = {name: asdict(getattr(self.numerics, name)) for name in numerics}
         if self.fields_at:
             values["fields_at"] = self.fields_at

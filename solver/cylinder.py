@@ -60,7 +60,8 @@ class Cylinder:
         if self.case.thread is not None and self.case.muscle.braid is not None:
             lf = self.thread_stretch(r, lz)
             count = self.case.muscle.braid.threads * self.case.thread.stiffness
-            tension = count * thread_law.tension(self.case.effects.threads, self.case.thread, lf)
+            width = self.case.numerics.slack.width_of(self.case.thread)
+            tension = count * thread_law.tension(self.case.effects.threads, width, lf)
             per_square = tension / (2 * lf * np.cos(self.angles))
             by_a = np.append(by_a, per_square * np.sin(self.angles) ** 2)
             by_b = np.append(by_b, per_square * np.cos(self.angles) ** 2)

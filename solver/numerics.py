@@ -6,6 +6,7 @@ from typing import Any
 from geometry.meridian import MeridianMesh
 from geometry.refusal import is_count, is_number
 from geometry.section import SectionMesh
+from solver.material import Thread
 from solver.refusal import UnsolvableCase
 
 ONE = {"unit": "1"}
@@ -47,6 +48,28 @@ class Clamp:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Slack:
+    """Over which strain a tension-only thread slackens: a smooth law instead of a kink.
+
+    Threads stiffer than ``stiffness`` work at smaller strains and get a width narrower in
+    proportion; otherwise the smoothing itself would carry load. docs/decisions has the numbers.
+    """
+
+    width: float = field(default=1e-3, metadata=ONE)
+    stiffness: float = field(default=315.0, metadata={"unit": "N"})  # EA of the default width
+
+    def __post_init__(self) -> None:
+        if not (is_number(self.width) and 0 < self.width <= 0.1):
+            raise UnsolvableCase("width", self.width, "more than 0, at most 0.1")
+        if not (is_number(self.stiffness) and self.stiffness > 0):
+            raise UnsolvableCase("stiffness", self.stiffness, "a finite number > 0 (N)")
+
+    def width_of(self, thread: Thread) -> float:
+        """Strain over which this thread slackens [1]."""
+        return self.width * min(1.0, self.stiffness / thread.stiffness)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Numerics:
     """Settings of all models; a case keeps those that its model reads."""
 
@@ -54,6 +77,7 @@ class Numerics:
     meridian: MeridianMesh = field(default_factory=MeridianMesh)
     section: SectionMesh = field(default_factory=SectionMesh)
     clamp: Clamp = field(default_factory=Clamp)
+    slack: Slack = field(default_factory=Slack)
 
 
 NUMERICS_OF_MODEL: dict[str, tuple[str, ...]] = {
@@ -67,4 +91,5 @@ KINDS: dict[str, Any] = {
     "meridian": MeridianMesh,
     "section": SectionMesh,
     "clamp": Clamp,
+    "slack": Slack,
 }

@@ -65,6 +65,7 @@ UNITS = {  # of /parameters
     "rubber/c01": "MPa",
     "rubber/kappa": "MPa",
     "thread/stiffness": "N",
+    "numerics/slack/stiffness": "N",
     "numerics/clamp/ramp": "mm",
     "numerics/clamp/thread_stiffness": "N/mm3",
     "numerics/clamp/inner_stiffness": "N/mm3",

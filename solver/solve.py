@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from solver import freefem, thread_law
+from solver import freefem
 from solver.case import Case
 from solver.effects import End
 from solver.load_path import Waypoint
@@ -138,7 +138,7 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
         inner, outer = muscle.braid.layer_angles
         tangents = math.tan(inner), math.tan(outer)
         stiffness = muscle.braid.threads * case.thread.stiffness
-        slack = thread_law.slack_width(case.thread)
+        slack = case.numerics.slack.width_of(case.thread)
     values |= {
         "layer_radius_1": radii[0],
         "layer_radius_2": radii[1],
