@@ -60,8 +60,8 @@ class Study:
     muscles: dict[str, StudiedMuscle]
     variants: dict[str, Variant]
     scenes: dict[str, Scene]
-    wall_time: float  # s, of one case
-    memory: float  # MB, of one case
+    wall_time: int  # s, of one case
+    memory: int  # MB, of one case
 
 
 def load(path: Path | str) -> Study:

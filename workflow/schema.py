@@ -167,8 +167,8 @@ class VariantEntry(Entry):
 class LimitsEntry(Entry):
     """What a case may use."""
 
-    wall_time: Annotated[float, Field(gt=0)] = 600.0  # s
-    memory: Annotated[float, Field(gt=0)] = 2000.0  # MB
+    wall_time: Annotated[int, Field(gt=0)] = 600  # s
+    memory: Annotated[int, Field(gt=0)] = 2000  # MB
 
 
 class Scene(Entry):

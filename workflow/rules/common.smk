@@ -15,7 +15,10 @@ from workflow.figure import drawn
 from workflow.plan import plan
 from workflow.study_error import StudyError
 
-PYTHON = shlex.quote(sys.executable)
+# Programs run with the Python of Snakemake itself, whether or not its environment is activated.
+PROGRAMS = shlex.quote(str(Path(sys.executable).parent))
+shell.prefix(f"set -euo pipefail; export PATH={PROGRAMS}:$PATH; ")
+
 STUDY = config.get("study", "config/config.yaml")
 
 try:
@@ -46,18 +49,49 @@ onstart:
 
 def sources(*patterns, without=()):
     """Source files of some folders, except those named."""
-    return sorted(
-        str(path)
-        for pattern in patterns
-        for path in Path().glob(pattern)
-        if path.name not in without
-    )
+    found = {str(path) for pattern in patterns for path in Path().glob(pattern)}
+    return sorted(found.difference(without))
 
 
 def record_of(case):
     return f"results/cases/{case}.h5"
 
 
+def mesh_of(wildcards):
+    mesh = PLAN.cases[wildcards.case].mesh
+    return f"results/meshes/{mesh}" if mesh else []
+
+
+# Of all sources of the solver, those that only one model reads.
+MODEL_SOURCES = {
+    "geometric": sources("solver/geometric.py"),
+    "cylinder": sources("solver/cylinder.py"),
+    "membrane": sources("solver/edp/membrane*"),
+    "solid": sources("solver/edp/solid*", "solver/edp/ends_*"),
+}
+
+
+def solver_sources(wildcards):
+    """Sources that decide the result of a case; what geometry makes of it is in its mesh."""
+    case = PLAN.cases[wildcards.case]
+    edp = ["solver/edp/*.edp", "solver/edp/*.idp"] if case.mesh else []
+    others = [
+        f for model, files in MODEL_SOURCES.items() if model != case.case.model for f in files
+    ]
+    return sources("solver/*.py", "geometry/muscle.py", "geometry/refusal.py", *edp, without=others)
+
+
 def figures():
     """Pictures of all scenes that have a figure; a scene without one is in the dataset only."""
     return [f"results/figures/{scene}.png" for scene in PLAN.study.scenes if drawn(scene)]
+
+
+def records_of_scene(wildcards):
+    return [record_of(case) for case in sorted(set(PLAN.scenes.get(wildcards.figure, {}).values()))]
+
+
+def figure_sources(wildcards):
+    """A figure's own module, what all figures share, and what reads the records."""
+    own = f"workflow/figures/{wildcards.figure}.py"
+    others = [file for file in sources("workflow/figures/fig*.py") if file != own]
+    return sources("workflow/figures/*.py", "workflow/*.py", without=others)

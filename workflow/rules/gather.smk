@@ -17,11 +17,12 @@ rule gather:
     log:
         "results/logs/gather.log",
     params:
+        study=STUDY,
         plan=PLAN.digest(),
     message:
         "Gathering the records of all cases"
     shell:
-        "{PYTHON} -m workflow gather --study {STUDY:q}"
+        "python -m workflow gather --study {params.study:q}"
         " --dataset {output.dataset:q} --failures {output.failures:q} 2> {log:q}"
 
 
@@ -37,4 +38,4 @@ rule complete:
     message:
         "Checking that no case failed"
     shell:
-        "{PYTHON} -m workflow failures --table {input.failures:q} 2> {log:q}"
+        "python -m workflow failures --table {input.failures:q} 2> {log:q}"

@@ -17,4 +17,4 @@ rule mesh:
     message:
         "Meshing {wildcards.mesh}"
     shell:
-        "{PYTHON} -m geometry - {output:q} <<< {params.spec:q} > {log:q} 2>&1"
+        "python -m geometry - {output:q} <<< {params.spec:q} > {log:q} 2>&1"
