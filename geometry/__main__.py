@@ -1,0 +1,81 @@
+"""Mesh or draw a muscle: ``python -m geometry SPEC OUTPUT``.
+
+SPEC is a JSON file (or - for standard input) that says what to make::
+
+    {"kind": "meridian", "muscle": {...}, "mesh": {...}}                  -> Medit .mesh
+    {"kind": "section", "end": "clamp", "muscle": {...}, "mesh": {...}}   -> MSH 2.2
+    {"kind": "whole", "muscle": {...}}                                    -> STEP
+
+with the fields of Muscle, MeridianMesh and SectionMesh. Ends with status 2 and one message if that
+cannot be built.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from geometry import meridian, section
+from geometry.grading import UnbuildableMesh
+from geometry.muscle import Muscle, UnbuildableMuscle
+from geometry.refusal import Refusal, build
+
+KEYS = {
+    "meridian": {"kind", "muscle", "mesh"},
+    "section": {"kind", "muscle", "mesh", "end"},
+    "whole": {"kind", "muscle"},
+}
+
+
+def make(spec: Mapping[str, Any], output: Path) -> None:
+    """Write what a specification describes.
+
+    Raises
+    ------
+    Refusal
+        Naming the field, its value and what is allowed.
+    """
+    if not isinstance(spec, Mapping) or spec.get("kind") not in KEYS:
+        found = spec.get("kind") if isinstance(spec, Mapping) else spec
+        raise UnbuildableMesh("kind", found, ", ".join(KEYS))
+    kind = spec["kind"]
+    if spec.keys() != KEYS[kind]:
+        raise UnbuildableMesh("keys", sorted(spec), f"exactly {sorted(KEYS[kind])}")
+    muscle = Muscle.from_dict(spec["muscle"])
+    if kind == "meridian":
+        mesh = build(meridian.MeridianMesh, spec["mesh"], UnbuildableMesh, "mesh")
+        meridian.write(muscle, mesh, output)
+    elif kind == "section":
+        section_mesh = build(section.SectionMesh, spec["mesh"], UnbuildableMesh, "mesh")
+        section.write(muscle, section_mesh, spec["end"], output)
+    else:
+        if muscle.braid is None:
+            raise UnbuildableMuscle("braid", None, "a braid, as it is what is drawn")
+        from geometry import whole
+
+        whole.write(muscle, output)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Parse the command line and make the file."""
+    parser = argparse.ArgumentParser(
+        prog="python -m geometry",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("spec", help="JSON file, or - for standard input")
+    parser.add_argument("output", type=Path, help="file to write, whole or not at all")
+    given = parser.parse_args(arguments)
+    try:
+        text = sys.stdin.read() if given.spec == "-" else Path(given.spec).read_text()
+        make(json.loads(text), given.output)
+    except (Refusal, OSError, ValueError) as error:
+        print(f"cannot be built: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

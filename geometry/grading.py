@@ -1,0 +1,114 @@
+"""Where the nodes lie along the axis: the zones that all meshes of the half muscle share.
+
+::
+
+    Z = 0            body              graded           L/2   clamp   L/2 + cap_length
+      |-------|-------|-------|-----|----|---|--|-|-|-|-|-|
+         steps near body_step   neighbours differ    steps near cap_step
+                                by growth
+
+Steps are relative to the muscle, so that a muscle scaled by a factor has the mesh scaled by it.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.muscle import Muscle
+from geometry.refusal import Refusal, is_count, is_number
+
+MIN_INTERVALS = 2  # over the half length, however short the muscle
+
+
+class UnbuildableMesh(Refusal):
+    """No such mesh can be built."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grading:
+    """Step sizes along the axis.
+
+    ``refinement`` m cuts every interval of m = 1 into m, with the m-th root of the growth in the
+    graded zone. So the nodes of m are among those of 2m, and m = 1, 2, 3, 4 are one family
+    of meshes for Richardson extrapolation.
+
+    Raises
+    ------
+    UnbuildableMesh
+        Naming the field, its value and what is allowed.
+    """
+
+    cap_step: float = field(metadata={"unit": "wall thickness"})
+    growth: float = field(metadata={"unit": "1"})  # ratio of neighbouring steps
+    body_step: float = field(metadata={"unit": "inner diameter"})
+    refinement: int = field(default=1, metadata={"unit": "1"})
+
+    def __post_init__(self) -> None:
+        for name in ("cap_step", "body_step"):
+            value = getattr(self, name)
+            if not (is_number(value) and value > 0):
+                raise UnbuildableMesh(name, value, "a finite number > 0")
+        if not (is_number(self.growth) and self.growth >= 1):
+            raise UnbuildableMesh("growth", self.growth, "a finite number >= 1")
+        if not is_count(self.refinement):
+            raise UnbuildableMesh("refinement", self.refinement, "an integer >= 1")
+
+    def half_length_stations(self, muscle: Muscle) -> NDArray[np.float64]:
+        """Z of the nodes from mid-length to the cap, 0 and L/2 among them exactly [mm]."""
+        half = muscle.length / 2
+        body, graded = self._intervals(muscle)
+        graded_length = self._graded_length(muscle, graded) if body else half
+        m = self.refinement
+        from_cap = graded_length * _geometric(self.growth, graded, m)
+        stations = half - from_cap[::-1] if graded else np.array([half])
+        if body:
+            start = half - graded_length if graded else half
+            stations = np.concatenate([np.linspace(0, start, body * m + 1)[:-1], stations])
+        stations[0], stations[-1] = 0.0, half
+        return stations
+
+    def clamp_stations(self, muscle: Muscle) -> NDArray[np.float64]:
+        """Z of the nodes beyond L/2, in equal steps to L/2 + cap_length [mm].
+
+        Raises
+        ------
+        UnbuildableMesh
+            If the muscle has no cap length.
+        """
+        if muscle.cap_length == 0:
+            raise UnbuildableMesh("cap_length", 0, "more than 0 where the end is a clamp (mm)")
+        count = max(1, round(muscle.cap_length / self._cap_step(muscle)))
+        steps = np.linspace(0, muscle.cap_length, count * self.refinement + 1)
+        return muscle.length / 2 + steps[1:]
+
+    def _intervals(self, muscle: Muscle) -> tuple[int, int]:
+        """Intervals of the body and of the graded zone, at refinement 1."""
+        half = muscle.length / 2
+        cap, body = self._cap_step(muscle), self.body_step * muscle.inner_diameter
+        full = math.ceil(math.log(body / cap) / math.log(self.growth)) if self.growth > 1 else 0
+        body_count = round((half - self._graded_length(muscle, full)) / body)
+        if full == 0:
+            return max(MIN_INTERVALS, body_count), 0
+        if body_count >= 1:
+            return body_count, full
+        # Too short for the full zone: it alone fills the half length, and ends earlier.
+        fitting = math.ceil(math.log1p(half / cap * (self.growth - 1)) / math.log(self.growth))
+        return 0, max(MIN_INTERVALS, min(fitting, full))
+
+    def _cap_step(self, muscle: Muscle) -> float:
+        """Step at the cap, never above that of the body [mm]."""
+        return min(self.cap_step * muscle.wall_thickness, self.body_step * muscle.inner_diameter)
+
+    def _graded_length(self, muscle: Muscle, count: int) -> float:
+        """Length of a graded zone of ``count`` intervals which begins with the cap's step [mm]."""
+        return self._cap_step(muscle) * sum(self.growth**k for k in range(count))
+
+
+def _geometric(growth: float, count: int, refinement: int) -> NDArray[np.float64]:
+    """Points of [0, 1] whose ``count`` intervals grow by ``growth``, each cut into refinement."""
+    exponents = np.arange(count * refinement + 1) / refinement
+    if growth == 1 or count == 0:
+        return exponents / max(count, 1)
+    return np.asarray((growth**exponents - 1) / (growth**count - 1))

@@ -1,0 +1,23 @@
+"""Names of boundaries and regions: the contract between the meshes and the solver.
+
+The numbers are physical groups of the gmsh files and labels in FreeFEM.
+"""
+
+from enum import IntEnum
+
+
+class Boundary(IntEnum):
+    """Lines of the section; MIDPLANE and END are the end points of the meridian, INNER its line."""
+
+    MIDPLANE = 1  # Z = 0, mid-length: symmetry
+    END = 2  # the tube's end face, which is Z = L/2 or, with a clamp, L/2 + cap_length
+    INNER = 3  # inner surface, under pressure
+    OUTER = 4  # outer surface
+    LAYER_1 = 5  # inner thread layer, clockwise
+    LAYER_2 = 6  # outer thread layer, counter-clockwise
+
+
+class Region(IntEnum):
+    """Areas of the section."""
+
+    WALL = 1  # rubber
