@@ -1,1 +1,1 @@
-"""The muscle, parametric, and its meshes by gmsh. Lengths in mm; knows no material and no solver."""
+"""The parametric muscle and its gmsh meshes. Lengths in mm; knows no material and no solver."""

@@ -4,6 +4,7 @@ Coordinates x = R (the inner radius everywhere), y = Z, z = 0, in mm.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from geometry.gmsh_file import writing
@@ -47,7 +48,7 @@ def write(muscle: Muscle, mesh: MeridianMesh, path: Path) -> None:
         geo = gmsh.model.geo
         for tag, z in zip(tags, stations, strict=True):
             geo.addPoint(muscle.inner_radius, z, 0, tag=tag)
-        lines = [geo.addLine(a, b) for a, b in zip(tags, tags[1:], strict=False)]
+        lines = [geo.addLine(a, b) for a, b in pairwise(tags)]
         for line in lines:
             geo.mesh.setTransfiniteCurve(line, 2)
         geo.synchronize()

@@ -13,6 +13,7 @@ fields of the clamp have a kink::
 """
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -103,7 +104,7 @@ def _lines(points: tuple[int, ...] | list[int]) -> list[int]:
     """Lines that join neighbouring points."""
     import gmsh
 
-    return [gmsh.model.geo.addLine(a, b) for a, b in zip(points, points[1:], strict=False)]
+    return [gmsh.model.geo.addLine(a, b) for a, b in pairwise(points)]
 
 
 def _cell(below: int, right: int, above: int, left: int, *, flip: bool) -> int:
