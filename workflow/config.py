@@ -5,7 +5,7 @@ here, and every muscle is built, so that what cannot be built is refused before 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -130,11 +130,11 @@ class _Muscles:
             values, keys = self.complete(name), ("muscles", name)
             bare = values.get("threads") == "none"
             self._check_keys(keys, values, BRAID_KEYS if bare else ())
-            braid = None if bare else self._braid(name, values, askers)
             shape = {key: values[key] for key in SHAPE_KEYS if key in values}
             checked = self.source.checked
+            tube = checked(keys, Muscle, shape | {"braid": None})
             self._built[name] = StudiedMuscle(
-                muscle=checked(keys, Muscle, shape | {"braid": braid}),
+                muscle=tube if bare else replace(tube, braid=self._braid(name, values, askers)),
                 material=values["material"],
                 rubber=self.rubbers[values["material"]],
                 thread=None

@@ -45,9 +45,10 @@ class Source:
             raise StudyError(f"{path}: cannot be read ({error})") from None
         except MarkedYAMLError as error:
             line = f":{error.problem_mark.line + 1}" if error.problem_mark else ""
-            raise StudyError(f"{path}{line}: {error.problem}") from None
+            problem = str(error.problem).partition(" with value")[0]  # of a duplicate key
+            raise StudyError(f"{path}{line}: {problem}") from None
         except (YAMLError, ValueError) as error:
-            raise StudyError(f"{path}: is no YAML ({str(error).splitlines()[0]})") from None
+            raise StudyError(f"{path}: cannot be read ({str(error).splitlines()[0]})") from None
         except RecursionError:
             raise StudyError(f"{path}: is nested too deeply") from None
 
@@ -97,17 +98,22 @@ class Source:
         keys = error["loc"]
         if keys and keys[-1] == "[key]":
             return f"{self.place(keys[:-1])} is no name\n  allowed: {NAME_RULE}"
-        if error["type"] == "extra_forbidden":
+        if error["type"] in ("extra_forbidden", "invalid_key"):
             allowed = choices(keys[-1], _known_keys(keys[:-1]))
             return f"{self.place(keys)} is no key here\n  allowed: {allowed}"
         if error["type"] == "missing":
             return f"{self.place(keys)} is missing\n  allowed: this key must be given"
         allowed = error["msg"].removeprefix("Input should be ")
+        if error["type"] in ("model_type", "dict_type"):
+            allowed = "a mapping, key: value"
         return f"{self.place(keys)} = {shown(error['input'])} is refused\n  allowed: {allowed}"
 
 
 def _plain(node: Any) -> Any:
-    """Without ruamel's own classes."""
+    """Without ruamel's own classes; a tag would be lost, so there must be none."""
+    tag = getattr(getattr(node, "tag", None), "value", None)
+    if tag is not None:
+        raise ValueError(f"the tag {tag} has no meaning here")
     if isinstance(node, Mapping):
         return {_plain(key): _plain(value) for key, value in node.items()}
     if isinstance(node, list):
