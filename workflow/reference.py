@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 FOLDER = Path(__file__).parent.parent / "config" / "reference"
 NOMINAL_LENGTH = 300.0  # mm, of the muscle that was measured
+SMALL = 0.1  # share of a curve's largest force below which a relative deviation means nothing
 SAME = 1e-9  # two pressures [MPa] or contractions this close are one
 
 Points = NDArray[np.float64]  # (point, 3): pressure [MPa], contraction [1], force [N]
@@ -89,7 +90,9 @@ class ForceMap:
 
         contraction, force = self._curve_points(pressure)
         if contraction.size < 2:
-            return lambda values: np.where(np.abs(values - contraction[0]) <= SAME, force, np.nan)
+            return lambda values: np.where(
+                np.abs(values - contraction[0]) <= SAME, force[0], np.nan
+            )
         return PchipInterpolator(contraction, force, extrapolate=False)
 
 
@@ -127,6 +130,21 @@ def martens2017() -> ForceMap:
 def load() -> dict[str, ForceMap]:
     """Both maps by name."""
     return {found.name: found for found in (musclesim(), martens2017())}
+
+
+def relative_deviation(
+    found: ForceMap, contraction: ArrayLike, pressure: float, force: ArrayLike
+) -> NDArray[np.float64]:
+    """(F - Fref) / Fref along a curve of constant pressure.
+
+    NaN outside the map and where Fref is less than a tenth of its largest value on the curve, as a
+    ratio to a small force says nothing.
+    """
+    expected = found.force(contraction, pressure)
+    if not np.isfinite(expected).any():
+        return expected
+    meaningful = expected > SMALL * np.nanmax(np.abs(expected))
+    return (np.asarray(force, dtype=float) - expected) / np.where(meaningful, expected, np.nan)
 
 
 def _rows(file: str) -> list[dict[str, str]]:

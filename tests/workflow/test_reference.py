@@ -64,3 +64,11 @@ def test_nan_outside(maps, name, contraction, pressure):
 def test_tabulated_contractions_around_a_pressure(maps):
     assert maps["martens2017"].contractions(0.3) == pytest.approx([4 / 300, 0.06, 0.11, 1 / 6])
     assert maps["festo_musclesim"].contractions(0.7).size == 0
+
+
+def test_a_single_point_is_no_curve(maps):
+    # at 0.065 MPa only 296 mm is under tension
+    found = maps["martens2017"].force([4 / 300, 0.02], 0.065)
+    assert found[0] == pytest.approx(54.9)
+    assert np.isnan(found[1])
+    assert maps["martens2017"].force(4 / 300, 0.065).shape == ()

@@ -1,0 +1,131 @@
+"""Drawing of curves: what failed is not drawn as if it had not.
+
+Converged states are joined by a line that stops at a gap; unstable ones are open circles; invalid
+ones and those not reached are left out, and a note on the figure says so.
+"""
+
+import textwrap
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from solver.status import StateStatus
+from workflow.figures.labels import SERIES, shown
+from workflow.figures.states import GOOD, REFERENCE
+from workflow.figures.style import COMPARED, SOFT, SOURCES, grow, legend, series
+
+NOT_DRAWN = (StateStatus.INVALID_STATE.value, StateStatus.NOT_REACHED.value)
+OPEN = {
+    "linestyle": "none",
+    "marker": "o",
+    "markerfacecolor": "white",
+    "zorder": 3,
+    "label": "unstable",
+}
+CHARACTERS = 18  # of a note, per inch of figure
+NOTE_LINE = 0.14  # inch
+
+
+def by_source(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
+    """One curve for each model, variant and reference map; ``style`` goes before theirs."""
+    for source in SOURCES:
+        for variant, each in rows[rows["source"] == source].groupby("variant", dropna=False):
+            curve(ax, each, x, y, **style_of(source, variant) | style)
+
+
+def by_series(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
+    """One curve for each series, model and variant: colour and marker by series, line by model."""
+    for number, (_, each) in enumerate(rows.groupby(SERIES, sort=False)):
+        for source, look in COMPARED.items():
+            for _, one in each[each["source"] == source].groupby("variant"):
+                step = max(1, len(one) // 5)
+                apart = {"markevery": (number % step, step)} if "marker" not in look else {}
+                curve(ax, one, x, y, **series(number) | apart | look | style)
+
+
+def series_legend(figure: Figure, table: pd.DataFrame) -> None:
+    """Legend of ``by_series`` above the axes: the series, then the models."""
+    named = [
+        Line2D([], [], **series(number), label=name)
+        for number, name in enumerate(table[SERIES].unique())
+    ]
+    models = [
+        Line2D([], [], color=SOFT, **look, label=SOURCES[source]["label"])
+        for source, look in COMPARED.items()
+        if (table["source"] == source).any()
+    ]
+    if (table["status"] == StateStatus.UNSTABLE.value).any():
+        models.append(Line2D([], [], color=SOFT, **OPEN))
+    legend(figure, [*named, *models])
+
+
+def style_of(source: str, variant: object) -> dict[str, Any]:
+    """Style of a model or map; a variant other than the default is thinner and dash-dotted."""
+    style = SOURCES[source]
+    if not isinstance(variant, str) or variant == "default":
+        return style
+    other = {"linewidth": 1.0, "linestyle": (0, (6, 1, 1, 1, 1, 1))}
+    return style | other | {"label": f"{style['label']}, {variant}"}
+
+
+def curve(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
+    """The stops of one curve, in the order of ``x``; a map has markers at its own points."""
+    rows = rows[rows["point"] != "zero force"].sort_values(x)
+    good = rows["status"].isin([GOOD, REFERENCE])
+    values = rows[y].where(good).to_numpy(dtype=float)
+    if np.isfinite(values).any():
+        own = np.flatnonzero(rows["point"] == "tabulated").tolist()
+        every = {"markevery": own} if (rows["status"] == REFERENCE).any() else {}
+        ax.plot(rows[x], values, **every | style)
+        if not every:
+            _dot_lonely(ax, rows[x].to_numpy(dtype=float), values, style)
+    unstable = rows[rows["status"] == StateStatus.UNSTABLE.value]
+    if len(unstable):
+        ax.plot(unstable[x], unstable[y], color=style["color"], **OPEN)
+
+
+def _dot_lonely(ax: Any, x: np.ndarray, y: np.ndarray, style: dict[str, Any]) -> None:
+    """A state without a neighbour on the line gets a dot."""
+    known = np.pad(np.isfinite(y), 1)
+    lonely = known[1:-1] & ~known[:-2] & ~known[2:]
+    if lonely.any():
+        ax.plot(x[lonely], y[lonely], ".", color=style["color"], label="_lonely")
+
+
+def note_gaps(figure: Figure, table: pd.DataFrame, by: list[str], x: str, text: str = "") -> None:
+    """Says under the axes which states are not drawn, curve by curve, and where along ``x``.
+
+    ``text`` is what else there is to say.
+    """
+    missing = table[table["status"].isin(NOT_DRAWN)]
+    lines = []
+    for (source, *keys, status), rows in missing.groupby(["source", *by, "status"], sort=False):
+        named = [shown(column, key) for column, key in zip(by, keys, strict=True)]
+        count = f"{len(rows)} state{'s' if len(rows) > 1 else ''} {status.replace('_', ' ')}"
+        lines.append(f"{', '.join([SOURCES[source]['label'], *named])}: {count}{_at(rows[x], x)}")
+    if lines:
+        text = f"Not drawn: {'; '.join(lines)}. {text}"
+    if text:
+        note(figure, text)
+
+
+def note(figure: Figure, text: str) -> None:
+    """Small print under a figure, which grows for it."""
+    width = figure.get_size_inches()[0]
+    lines = textwrap.wrap(text, int(width * CHARACTERS))
+    grow(figure, bottom=NOTE_LINE * (len(lines) + 0.5))
+    corner = 0.1 / width, 0.06 / figure.get_size_inches()[1]
+    figure.text(*corner, "\n".join(lines), color=SOFT, fontsize=7, va="bottom")
+
+
+def _at(values: pd.Series, column: str) -> str:
+    """Where the states are, as far as that is known."""
+    low, high = values.min(), values.max()
+    if not np.isfinite(low):
+        return ""
+    if low == high:
+        return f" at {shown(column, low)}"
+    return f" from {shown(column, low)} to {shown(column, high)}"

@@ -1,0 +1,33 @@
+"""Contraction against pressure under constant loads (claim C5)."""
+
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from workflow.figures import curves
+from workflow.figures.labels import SERIES, series
+from workflow.figures.states import CONTRACTION, FORCE, PRESSURE, states
+from workflow.figures.style import COLUMN_WIDTH, panels, percent
+
+
+def table(data: Any) -> pd.DataFrame:
+    """Contraction of all states; the force is the load."""
+    every = states(data, ["contraction"])
+    every[SERIES] = series(every, [FORCE, "muscle"])
+    return every
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    """One curve per load."""
+    figure, axes = panels(COLUMN_WIDTH, 3.3)
+    ax = axes[0, 0]
+    curves.by_series(ax, table, PRESSURE, CONTRACTION)
+    ax.axhline(0, color="black", linewidth=0.7)
+    ax.set_xlabel("pressure [MPa]")
+    ax.set_ylabel("contraction [%]")
+    ax.set_ylim(bottom=max(ax.get_ylim()[0], -0.12))  # Eq. (1) goes far down at low pressure
+    percent(ax.yaxis, 0.05)
+    curves.series_legend(figure, table)
+    curves.note_gaps(figure, table, [SERIES], PRESSURE)
+    return figure

@@ -1,0 +1,16 @@
+"""Force against contraction for two braid angles, by Eq. (1) and by finite elements (claim C6)."""
+
+from typing import Any
+
+import pandas as pd
+
+from workflow.figures import force_contraction
+from workflow.figures.force_contraction import draw
+from workflow.figures.states import ANGLE
+
+__all__ = ["draw", "table"]
+
+
+def table(data: Any) -> pd.DataFrame:
+    """States of the muscles, told apart by braid angle."""
+    return force_contraction.table(data, [ANGLE])

@@ -1,0 +1,50 @@
+"""What values are called in legends, titles and notes."""
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import pandas as pd
+
+from workflow.figures.states import (
+    ANGLE,
+    CONTRACTION,
+    DIAMETER,
+    FORCE,
+    PRESSURE,
+    THREADS,
+    WALL,
+)
+
+SERIES = "series"  # column: what the curves of a figure are told apart by
+SHOWN: dict[str, Callable[[Any], str]] = {
+    CONTRACTION: lambda value: f"{100 * value:g} %",
+    PRESSURE: lambda value: f"{value:g} MPa",
+    FORCE: lambda value: f"{value:g} N",
+    ANGLE: lambda value: f"{value:.1f}°",
+    DIAMETER: lambda value: f"{value:g} mm",
+    WALL: lambda value: f"{value:g} mm wall",
+    THREADS: lambda value: f"{value:g} threads",
+    "material": lambda value: "NBR" if value == "nbr" else value,
+}
+
+NOUN = {CONTRACTION: " contraction", FORCE: " load"}  # what a value alone does not say
+
+
+def shown(column: str, value: Any) -> str:
+    """A value as text, with its unit."""
+    return SHOWN.get(column, str)(value)
+
+
+def series(table: pd.DataFrame, columns: Iterable[str]) -> pd.Series:
+    """A name for every row: its values in those of the columns that vary (or in the first)."""
+    columns = list(columns)
+    varying = [column for column in columns if table[column].nunique() > 1] or columns[:1]
+    return table[varying].apply(lambda row: ", ".join(map(shown, varying, row)), axis=1)
+
+
+def constants(table: pd.DataFrame, columns: Iterable[str]) -> str:
+    """The values of those columns that do not vary, as a title."""
+    constant = [column for column in columns if table[column].nunique() == 1]
+    return ", ".join(
+        shown(column, table[column].dropna().iloc[0]) + NOUN.get(column, "") for column in constant
+    )

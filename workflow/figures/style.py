@@ -1,0 +1,200 @@
+"""One look for all figures: sizes, line styles of models and muscles, legible in grey.
+
+What differs differs in line style or marker, never in colour alone. Importing this module sets
+matplotlib's parameters; ``save`` writes the same bytes for the same figure.
+"""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.gridspec import GridSpec
+from matplotlib.ticker import MultipleLocator, PercentFormatter
+
+from workflow.aside import aside
+
+FULL, COLUMN_WIDTH = 7.0, 4.6  # widths [inch]
+LEFT, RIGHT, TOP, BOTTOM = 0.7, 0.14, 0.28, 0.48  # margins around the axes [inch]
+GAP = 0.28  # between axes [inch]
+LEGEND_ROW, HANDLE, CHARACTER = 0.19, 0.66, 0.067  # height, key and gaps, a character [inch]
+DPI = 150
+SOFT = "0.45"  # grey of what is said about the data, not the data
+
+matplotlib.rcParams.update(
+    {
+        "font.family": "DejaVu Sans",
+        "font.size": 8.5,
+        "mathtext.fontset": "dejavusans",
+        "axes.titlesize": 8.5,
+        "axes.titleweight": "bold",
+        "axes.titlelocation": "left",
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.linewidth": 0.7,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "grid.color": "0.9",
+        "grid.linewidth": 0.6,
+        "xtick.direction": "out",
+        "lines.linewidth": 1.5,
+        "lines.markersize": 4,
+        "legend.frameon": False,
+        "legend.handlelength": 2.8,
+        "legend.fontsize": 8.5,
+        "svg.fonttype": "none",
+        "svg.hashsalt": "muscle",
+        "savefig.dpi": DPI,
+        "figure.dpi": DPI,
+    }
+)
+
+SOURCES: dict[str, dict[str, Any]] = {  # models and reference maps
+    "geometric": {"label": "Eq. (1)", "color": "0.45", "linestyle": (0, (5, 2))},
+    "cylinder": {"label": "cylinder", "color": "#cc79a7", "linestyle": (0, (5, 1, 1, 1))},
+    "solid": {"label": "FE solid", "color": "#5ba4d6", "linewidth": 2.8},
+    "membrane": {"label": "FE membrane", "color": "black", "linewidth": 1.1},
+    "festo_musclesim": {
+        "label": "Festo MuscleSIM",
+        "color": "#d55e00",
+        "linewidth": 0.9,
+        "marker": "s",
+    },
+    "martens2017": {
+        "label": "Martens & Boblan 2017",
+        "color": "#009e73",
+        "linewidth": 0.9,
+        "marker": "o",
+    },
+}
+COMPARED: dict[str, dict[str, Any]] = {  # models where the colour says something else
+    "geometric": {"linewidth": 1.2, "linestyle": (0, (5, 2)), "marker": ""},
+    "cylinder": {"linewidth": 1.2, "linestyle": (0, (5, 1, 1, 1)), "marker": ""},
+    "solid": {"linewidth": 2.8, "alpha": 0.5, "marker": ""},
+    "membrane": {"linewidth": 1.1},
+}
+SERIES: tuple[dict[str, Any], ...] = (  # muscles, loads, materials compared in one plot
+    {"color": "#0072b2", "marker": "o"},
+    {"color": "#d55e00", "marker": "s"},
+    {"color": "#009e73", "marker": "^"},
+    {"color": "#7b3294", "marker": "D"},
+    {"color": "black", "marker": "v"},
+    {"color": "#b8860b", "marker": "P"},
+)
+
+
+def series(number: int) -> dict[str, Any]:
+    """Colour and marker of the n-th thing compared; they repeat after six."""
+    return SERIES[number % len(SERIES)]
+
+
+def grid(
+    width: float,
+    height: float,
+    rows: int = 1,
+    columns: int = 1,
+    *,
+    gap: tuple[float, float] = (GAP, GAP),
+    right: float = RIGHT,
+    **ratios: Any,
+) -> tuple[Figure, GridSpec]:
+    """A figure and places for its axes; all lengths in inch, ``gap`` between columns and rows."""
+    figure = Figure(figsize=(width, height))
+    FigureCanvasAgg(figure)
+    wide = (width - LEFT - right - gap[0] * (columns - 1)) / columns
+    tall = (height - TOP - BOTTOM - gap[1] * (rows - 1)) / rows
+    figure.subplots_adjust(
+        left=LEFT / width,
+        right=1 - right / width,
+        top=1 - TOP / height,
+        bottom=BOTTOM / height,
+        wspace=gap[0] / wide,
+        hspace=gap[1] / tall,
+    )
+    return figure, figure.add_gridspec(rows, columns, **ratios)
+
+
+def panels(
+    width: float,
+    height: float,
+    rows: int = 1,
+    columns: int = 1,
+    *,
+    sharex: bool | str = False,
+    sharey: bool | str = False,
+    **options: Any,
+) -> tuple[Figure, Any]:
+    """A figure and its axes, shape (rows, columns); see ``grid``."""
+    figure, places = grid(width, height, rows, columns, **options)
+    return figure, places.subplots(squeeze=False, sharex=sharex, sharey=sharey)
+
+
+def percent(axis: Any, step: float | None = None) -> None:
+    """Shows fractions as percent on a matplotlib axis (``ax.xaxis`` or ``ax.yaxis``)."""
+    axis.set_major_formatter(PercentFormatter(1, decimals=0, symbol=""))
+    if step:
+        axis.set_major_locator(MultipleLocator(step))
+
+
+def labelled(axes: Any) -> list[Any]:
+    """What is drawn on some axes and has a label, each label once."""
+    found: dict[str, Any] = {}
+    for ax in axes.flat:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            found.setdefault(label, handle)
+    return list(found.values())
+
+
+def legend(figure: Figure, handles: list[Any]) -> None:
+    """One legend above all axes, in as few rows as fit; the figure grows for it."""
+    labels = [str(handle.get_label()) for handle in handles]
+    width = figure.get_size_inches()[0]
+    columns = _columns(labels, width - LEFT)
+    rows = math.ceil(len(labels) / columns)
+    grow(figure, top=LEGEND_ROW * rows)
+    figure.legend(
+        handles=handles,
+        ncol=columns,
+        columnspacing=1.4,
+        borderpad=0.2,
+        borderaxespad=0.3,
+        loc="upper left",
+        bbox_to_anchor=((LEFT - 0.06) / width, 1.0),
+    )
+
+
+def _columns(labels: list[str], width: float) -> int:
+    """Most columns of a legend that fit into a width [inch]."""
+    for columns in range(len(labels), 1, -1):
+        filled = np.array_split([len(label) for label in labels], columns)  # as matplotlib does
+        if sum(HANDLE + CHARACTER * max(lengths) for lengths in filled) <= width:
+            return columns
+    return 1
+
+
+def grow(figure: Figure, *, top: float = 0, bottom: float = 0) -> None:
+    """Makes a figure higher; its axes keep their size [inch]."""
+    width, height = figure.get_size_inches()
+    taller, now = height + top + bottom, figure.subplotpars
+    figure.set_size_inches(width, taller)
+    figure.subplots_adjust(
+        bottom=(now.bottom * height + bottom) / taller, top=(now.top * height + bottom) / taller
+    )
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Writes a figure, whole or not at all; the ending of the path says the format.
+
+    Raises
+    ------
+    ValueError
+        If it is neither .png nor .svg.
+    """
+    metadata = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}
+    if path.suffix not in metadata:
+        raise ValueError(f"{path}: a figure is .png or .svg")
+    with aside(path) as beside:
+        figure.savefig(beside, format=path.suffix[1:], metadata=metadata[path.suffix])
