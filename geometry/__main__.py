@@ -1,4 +1,4 @@
-"""Mesh or draw a muscle: ``python -m geometry SPEC OUTPUT``.
+"""Mesh a muscle, or write it whole: ``python -m geometry SPEC OUTPUT``.
 
 SPEC is a JSON file (or - for standard input) that says what to make::
 
@@ -17,9 +17,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from geometry import meridian, section
+from geometry import meridian, section, whole
 from geometry.grading import UnbuildableMesh
-from geometry.muscle import Muscle, UnbuildableMuscle
+from geometry.muscle import Muscle
 from geometry.refusal import Refusal, build
 
 KEYS = {
@@ -37,10 +37,9 @@ def make(spec: Mapping[str, Any], output: Path) -> None:
     Refusal
         Naming the field, its value and what is allowed.
     """
-    if not isinstance(spec, Mapping) or spec.get("kind") not in KEYS:
-        found = spec.get("kind") if isinstance(spec, Mapping) else spec
-        raise UnbuildableMesh("kind", found, ", ".join(KEYS))
-    kind = spec["kind"]
+    kind = spec.get("kind") if isinstance(spec, Mapping) else None
+    if not isinstance(kind, str) or kind not in KEYS:
+        raise UnbuildableMesh("kind", kind, ", ".join(KEYS))
     if spec.keys() != KEYS[kind]:
         raise UnbuildableMesh("keys", sorted(spec), f"exactly {sorted(KEYS[kind])}")
     muscle = Muscle.from_dict(spec["muscle"])
@@ -51,10 +50,6 @@ def make(spec: Mapping[str, Any], output: Path) -> None:
         section_mesh = build(section.SectionMesh, spec["mesh"], UnbuildableMesh, "mesh")
         section.write(muscle, section_mesh, spec["end"], output)
     else:
-        if muscle.braid is None:
-            raise UnbuildableMuscle("braid", None, "a braid, as it is what is drawn")
-        from geometry import whole
-
         whole.write(muscle, output)
 
 

@@ -1,6 +1,8 @@
 """A gmsh model from nothing to a file that is whole or absent."""
 
 import os
+import re
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +13,13 @@ def writing(path: Path, suffix: str) -> Iterator[None]:
     """Build a gmsh model in the block; it is written to ``path`` when the block ends.
 
     gmsh chooses the format by ``suffix``. Nothing is written if the block raises. The user's own
-    gmsh settings are not read, so that equal input gives equal bytes.
+    gmsh settings are not read, so that equal input gives equal bytes (STEP: in a fresh process, as
+    OpenCASCADE numbers its products through the life of one).
+
+    Raises
+    ------
+    OSError
+        If there is no such folder, or it cannot be written to.
     """
     import gmsh  # 0.3 s: only where something is meshed
 
@@ -20,8 +28,32 @@ def writing(path: Path, suffix: str) -> Iterator[None]:
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         yield
-        gmsh.write(str(aside))
+        aside.touch()  # gmsh would not say why it cannot
+        with _silent():
+            gmsh.write(str(aside))
+        if suffix == ".step":
+            _undate(aside)
         os.replace(aside, path)
     finally:
         aside.unlink(missing_ok=True)
         gmsh.finalize()
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """No standard output, not even from C++: OpenCASCADE reports what it writes, unasked."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    with open(os.devnull, "w") as nowhere:
+        os.dup2(nowhere.fileno(), 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+
+
+def _undate(step: Path) -> None:
+    """Take the time of writing out of a STEP file's header."""
+    stamp = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d")
+    step.write_text(stamp.sub("", step.read_text(), count=1))

@@ -20,6 +20,7 @@ from geometry.muscle import Muscle
 from geometry.refusal import Refusal, is_count, is_number
 
 MIN_INTERVALS = 2  # over the half length, however short the muscle
+MAX_INTERVALS = 10_000  # in a zone: more is a slip of the pen, not a mesh
 
 
 class UnbuildableMesh(Refusal):
@@ -80,6 +81,7 @@ class Grading:
         if muscle.cap_length == 0:
             raise UnbuildableMesh("cap_length", 0, "more than 0 where the end is a clamp (mm)")
         count = max(1, round(muscle.cap_length / self._cap_step(muscle)))
+        self._refuse_many("cap_step", count)
         steps = np.linspace(0, muscle.cap_length, count * self.refinement + 1)
         return muscle.length / 2 + steps[1:]
 
@@ -88,6 +90,8 @@ class Grading:
         half = muscle.length / 2
         cap, body = self._cap_step(muscle), self.body_step * muscle.inner_diameter
         full = math.ceil(math.log(body / cap) / math.log(self.growth)) if self.growth > 1 else 0
+        self._refuse_many("growth", full)
+        self._refuse_many("body_step", half / body)
         body_count = round((half - self._graded_length(muscle, full)) / body)
         if full == 0:
             return max(MIN_INTERVALS, body_count), 0
@@ -96,6 +100,14 @@ class Grading:
         # Too short for the full zone: it alone fills the half length, and ends earlier.
         fitting = math.ceil(math.log1p(half / cap * (self.growth - 1)) / math.log(self.growth))
         return 0, max(MIN_INTERVALS, min(fitting, full))
+
+    def _refuse_many(self, name: str, count: float) -> None:
+        """Refuse the setting of this name if it asks for too many intervals."""
+        if count * self.refinement > MAX_INTERVALS:
+            allowed = (
+                f"what leads to at most {MAX_INTERVALS} steps ({count * self.refinement:.0f} here)"
+            )
+            raise UnbuildableMesh(name, getattr(self, name), allowed)
 
     def _cap_step(self, muscle: Muscle) -> float:
         """Step at the cap, never above that of the body [mm]."""
