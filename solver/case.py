@@ -7,7 +7,7 @@ it, so that scenes which differ only there share the solve.
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 from geometry.muscle import Muscle
@@ -20,6 +20,12 @@ from solver.refusal import UnsolvableCase
 
 MODELS = tuple(NUMERICS_OF_MODEL)
 MESHED = {"membrane": "meridian", "solid": "section"}
+INCOMPRESSIBLE = {"kappa": 1e300}
+UNREAD: dict[str, dict[str, dict[str, float]]] = {  # by model, what it leaves out of the identity
+    "geometric": {"muscle": {"wall_thickness": 1e9, "length": 1.0}},
+    "cylinder": {"muscle": {"length": 1.0}, "rubber": INCOMPRESSIBLE},
+    "membrane": {"rubber": INCOMPRESSIBLE},
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,6 +58,8 @@ class Case:
             raise UnsolvableCase("thread", None, "a thread, as the muscle has a braid")
         if self.muscle.braid is None and self.model == "geometric":
             raise UnsolvableCase("model", self.model, "another model: Eq. (1) needs a braid")
+        if not isinstance(self.fields_at, tuple):
+            raise UnsolvableCase("fields_at", self.fields_at, "a list of stops of the path")
         for stop in self.fields_at:
             if stop not in self.path.stops:
                 raise UnsolvableCase("fields_at", stop, f"stops of the path, {self.path.stops}")
@@ -118,30 +126,28 @@ class Case:
         return json.dumps(_canonical(spec), sort_keys=True, allow_nan=False)
 
     @classmethod
-    def from_dict(cls, values: Mapping[str, Any]) -> "Case":
-        """The case of a plain mapping as ``as_dict`` makes it; what it leaves out is not read."""
-        unread = {"wall_thickness": 1.0, "length": 1.0}  # by the model; never part of the identity
-        muscle = dict(values["muscle"])
-        if values["model"] == "geometric":
-            unread["wall_thickness"] = muscle["braid"]["layer_diameters"][1]
-        muscle = {k: v for k, v in unread.items() if k not in muscle} | muscle
-        numerics = {
-            name: build(KINDS[name], entry, UnsolvableCase, f"numerics.{name}")
-            for name, entry in values.get("numerics", {}).items()
+    def from_dict(cls, values: object) -> "Case":
+        """The case of a plain mapping as ``as_dict`` makes it.
+
+        Only what the model does not read may be left out; unknown keys are refused.
+        """
+        given = _filled(values)
+        muscle = Muscle.from_dict(given.get("muscle"))
+        parts: dict[str, Any] = {
+            name: build(kind, given.get(name), UnsolvableCase, name)
+            for name, kind in (("rubber", MooneyRivlin), ("path", LoadPath), ("effects", Effects))
         }
+        if muscle.braid is None:
+            parts["thread"] = None
+        else:
+            parts["thread"] = build(Thread, given.get("thread"), UnsolvableCase, "thread")
+        fields_at = given["fields_at"]
         return cls(
-            muscle=Muscle.from_dict(muscle),
-            rubber=build(
-                MooneyRivlin, values.get("rubber", {"c10": 1, "c01": 0}), UnsolvableCase, "rubber"
-            ),
-            thread=build(Thread, values.get("thread", {"stiffness": 1}), UnsolvableCase, "thread")
-            if muscle["braid"]
-            else None,
-            path=build(LoadPath, values["path"], UnsolvableCase, "path"),
-            model=values["model"],
-            effects=build(Effects, values.get("effects", {}), UnsolvableCase, "effects"),
-            numerics=Numerics(**numerics),
-            fields_at=tuple(values.get("fields_at", ())),
+            muscle=muscle,
+            model=given["model"],
+            numerics=_numerics(given["numerics"]),
+            fields_at=tuple(fields_at) if isinstance(fields_at, list) else fields_at,
+            **parts,
         )
 
     @classmethod
@@ -153,6 +159,43 @@ class Case:
 def digest(text: str) -> str:
     """First 16 hexadecimal digits of the SHA-256 of a text: the name of a case or a mesh."""
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _filled(values: object) -> dict[str, Any]:
+    """The mapping of a case with something that can be built in place of what its model ignores."""
+    if not isinstance(values, Mapping):
+        raise UnsolvableCase("case", values, "a mapping")
+    known = [f.name for f in fields(Case)]
+    for key in values:
+        if key not in known:
+            raise UnsolvableCase(key, values[key], f"no such key; there are {', '.join(known)}")
+    model = values.get("model")
+    if model not in MODELS:
+        raise UnsolvableCase("model", model, ", ".join(MODELS))
+    given: dict[str, Any] = {"effects": {}, "numerics": {}, "fields_at": ()} | dict(values)
+    if model == "geometric":
+        given = {"rubber": {"c10": 1, "c01": 0}, "thread": {"stiffness": 1}} | given
+    for part, unread in UNREAD.get(model, {}).items():
+        if isinstance(given.get(part), Mapping):
+            given[part] = {**unread, **given[part]}
+    return given
+
+
+def _numerics(values: object) -> Numerics:
+    """The settings of a mapping; groups that are left out have their defaults."""
+    if not isinstance(values, Mapping):
+        raise UnsolvableCase("numerics", values, f"a mapping with the keys {', '.join(KINDS)}")
+    for name in values:
+        if name not in KINDS:
+            raise UnsolvableCase(
+                f"numerics.{name}", values[name], f"no such key; there are {', '.join(KINDS)}"
+            )
+    return Numerics(
+        **{
+            name: build(KINDS[name], entry, UnsolvableCase, f"numerics.{name}")
+            for name, entry in values.items()
+        }
+    )
 
 
 def _canonical(value: Any) -> Any:

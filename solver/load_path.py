@@ -75,9 +75,13 @@ class LoadPath:
     zero_force: bool = field(default=False)
 
     def __post_init__(self) -> None:
+        if self.kind not in list(PathKind):
+            raise UnsolvableCase("kind", self.kind, ", ".join(PathKind))
         object.__setattr__(self, "kind", PathKind(self.kind))
-        if not self.stops:
-            raise UnsolvableCase("stops", self.stops, "at least one value")
+        if not isinstance(self.stops, tuple) or not self.stops:
+            raise UnsolvableCase("stops", self.stops, "a list of at least one value")
+        if not isinstance(self.zero_force, bool):
+            raise UnsolvableCase("zero_force", self.zero_force, "true or false")
         for name, control, values in (
             ("held", HELD[self.kind], (self.held,)),
             ("stops", SWEPT[self.kind], self.stops),

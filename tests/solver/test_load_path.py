@@ -1,0 +1,150 @@
+"""The way of every kind of path, and the paths that make no sense."""
+
+import math
+
+import pytest
+
+from solver.load_path import RAMP_STEPS, Control, LoadPath, PathKind
+from solver.refusal import UnsolvableCase
+
+EPS, P, F = Control.CONTRACTION, Control.PRESSURE, Control.FORCE
+
+
+def path(kind: str, held: float, *stops: float, **more) -> LoadPath:
+    return LoadPath(kind=kind, held=held, stops=stops, **more)
+
+
+def targets(way) -> list[tuple]:
+    """Each waypoint as {control: target} and its stop."""
+    return [
+        ({w.first: pytest.approx(w.first_target), w.second: pytest.approx(w.second_target)}, w.stop)
+        for w in way
+    ]
+
+
+def recorded(way) -> list[tuple]:
+    return [(seen, stop) for seen, stop in targets(way) if stop is not None]
+
+
+def ramp(way) -> list[dict]:
+    return [seen for seen, stop in targets(way)[: -len(recorded(way))] if stop is None]
+
+
+def test_isobaric_way():
+    (way,) = path("isobaric", 0.4, 0.0, 0.1, 0.2).ways()
+    assert ramp(way) == [{EPS: 0, P: 0.1}, {EPS: 0, P: 0.2}, {EPS: 0, P: 0.3}, {EPS: 0, P: 0.4}]
+    assert recorded(way) == [
+        ({P: 0.4, EPS: 0.0}, 0),
+        ({P: 0.4, EPS: 0.1}, 1),
+        ({P: 0.4, EPS: 0.2}, 2),
+    ]
+
+
+def test_isobaric_way_extends_first_and_returns():
+    """Longer, further each time, then home and shorter: nothing is skipped."""
+    (way,) = path("isobaric", 0.4, -0.1, -0.05, 0.0, 0.1).ways()
+    contractions = [w.second_target for w in way[RAMP_STEPS:]]
+    assert contractions == [-0.05, -0.1, 0.0, 0.0, 0.1]
+    assert [w.stop for w in way[RAMP_STEPS:]] == [1, 0, None, 2, 3]
+
+
+def test_isobaric_way_to_the_free_contraction():
+    curve = path("isobaric", 0.4, 0.0, 0.1, zero_force=True)
+    (way,) = curve.ways()
+    assert curve.states == 3
+    assert recorded(way)[-1] == ({P: 0.4, F: 0}, 2)
+
+
+def test_without_pressure_there_is_no_ramp():
+    (way,) = path("isobaric", 0.0, 0.0, 0.1).ways()
+    assert [w.stop for w in way] == [0, 1]
+
+
+def test_isometric_way_falls_from_the_highest_pressure():
+    falling = path("isometric", 0.1, 0.0, 0.2, 0.4).ways()[0]
+    assert targets(falling)[RAMP_STEPS - 1] == ({EPS: 0, P: 0.4}, None)
+    assert targets(falling)[2 * RAMP_STEPS - 1] == ({EPS: 0.1, P: 0.4}, None)
+    assert recorded(falling) == [
+        ({EPS: 0.1, P: 0.4}, 2),
+        ({EPS: 0.1, P: 0.2}, 1),
+        ({EPS: 0.1, P: 0.0}, 0),
+    ]
+
+
+def test_isometric_way_looks_for_the_threshold_from_above():
+    curve = path("isometric", 0.1, 0.1, 0.4, zero_force=True)
+    falling = curve.ways()[0]
+    assert [stop for _, stop in recorded(falling)] == [1, 2, 0]
+    assert recorded(falling)[1] == ({EPS: 0.1, F: 0}, 2)
+
+
+def test_isometric_second_way_rises():
+    """For what lies below a highest pressure that cannot be reached."""
+    _, rising = path("isometric", 0.1, 0.0, 0.2, 0.4).ways()
+    assert targets(rising)[RAMP_STEPS - 1] == ({EPS: 0.1, P: 0}, None)
+    assert [stop for _, stop in recorded(rising)] == [0, 1, 2]
+
+
+def test_isometric_way_at_the_initial_length_does_not_contract():
+    falling = path("isometric", 0.0, 0.1, 0.2).ways()[0]
+    assert len(falling) == RAMP_STEPS + 2
+
+
+def test_isotonic_way():
+    (way,) = path("isotonic", 200.0, 0.0, 0.3).ways()
+    assert ramp(way) == [{P: 0, F: 50}, {P: 0, F: 100}, {P: 0, F: 150}, {P: 0, F: 200}]
+    assert recorded(way) == [({F: 200, P: 0}, 0), ({F: 200, P: 0.3}, 1)]
+
+
+@pytest.mark.parametrize("kind", PathKind)
+def test_every_stop_is_on_every_way(kind):
+    curve = path(kind, 0.1, 0.1, 0.2, 0.3)
+    for way in curve.ways():
+        assert sorted(w.stop for w in way if w.stop is not None) == list(range(curve.states))
+
+
+@pytest.mark.parametrize(
+    ("field", "arguments"),
+    [
+        ("stops", ("isobaric", 0.3)),
+        ("stops", ("isobaric", 0.3, 0.1, 0.0)),
+        ("stops", ("isobaric", 0.3, 0.1, 0.1)),
+        ("stops", ("isobaric", 0.3, 0.7)),
+        ("stops", ("isobaric", 0.3, -0.6)),
+        ("stops", ("isobaric", 0.3, 10)),  # per cent
+        ("stops", ("isobaric", 0.3, math.nan)),
+        ("stops", ("isobaric", 0.3, "0.1")),
+        ("stops", ("isobaric", 0.3, True)),
+        ("held", ("isobaric", -0.3, 0.1)),
+        ("held", ("isobaric", math.inf, 0.1)),
+        ("held", ("isobaric", None, 0.1)),
+        ("held", ("isometric", 10, 0.3)),
+        ("stops", ("isometric", 0.1, -0.1)),
+        ("stops", ("isotonic", 200, -0.1)),
+        ("held", ("isotonic", math.nan, 0.1)),
+    ],
+)
+def test_refused_path(field, arguments):
+    with pytest.raises(UnsolvableCase) as refused:
+        path(*arguments)
+    assert refused.value.field == field
+
+
+def test_a_muscle_may_be_pushed():
+    assert path("isotonic", -50.0, 0.1).held == -50
+
+
+def test_there_is_no_zero_force_under_a_load():
+    with pytest.raises(UnsolvableCase, match="zero_force"):
+        path("isotonic", 200.0, 0.1, zero_force=True)
+
+
+@pytest.mark.parametrize("value", ["yes", 1, None])
+def test_zero_force_is_true_or_false(value):
+    with pytest.raises(UnsolvableCase, match="zero_force"):
+        path("isobaric", 0.3, 0.1, zero_force=value)
+
+
+def test_an_unknown_kind_is_refused():
+    with pytest.raises(UnsolvableCase, match="isobaric, isometric, isotonic"):
+        path("isochoric", 0.3, 0.1)
