@@ -19,6 +19,7 @@ rule all:
     default_target: True
     input:
         figures(),
+        expand("results/muscles/{muscle}.step", muscle=PLAN.shown),
         "results/dataset.nc",
         "results/complete.txt",
 

@@ -5,10 +5,12 @@ and held value) are one case, with the stops of all scenes that ask for it; so e
 solved once, however many figures show it.
 """
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 from geometry import section
+from geometry.muscle import Muscle
 from solver.case import Case, digest
 from solver.load_path import LoadPath
 from workflow.config import Study
@@ -70,12 +72,14 @@ class Plan:
     cases : by key, sorted by place
     meshes : specification by file name
     scenes : of every scene that has cases, the key of the case at each of its places
+    shown : specification of the whole muscles that scenes without cases show, by name
     """
 
     study: Study
     cases: dict[str, PlannedCase]
     meshes: dict[str, str]
     scenes: dict[str, dict[Place, str]]
+    shown: dict[str, str]
 
     def digest(self, scene: str | None = None) -> str:
         """Digest of all that a scene (None: the dataset) takes from the study but its cases."""
@@ -137,7 +141,18 @@ def plan(study: Study) -> Plan:
             name: {place: planned[curve].case.key for place, curve in sorted(found.items())}
             for name, found in places.items()
         },
+        shown={
+            name: _whole(study.muscles[name].muscle)
+            for scene in study.scenes.values()
+            if scene.path is None
+            for name in scene.muscles
+        },
     )
+
+
+def _whole(muscle: Muscle) -> str:
+    """Specification of a muscle in three dimensions, for ``python -m geometry``."""
+    return json.dumps({"kind": "whole", "muscle": muscle.as_dict()}, sort_keys=True)
 
 
 def _curves(study: Study, name: str, scene: Scene) -> Iterator[tuple[Place, Case]]:

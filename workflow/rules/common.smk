@@ -5,6 +5,7 @@
 # Only workflow/config.py reads a study file, so it is no configfile: and no input of a rule. What a
 # job takes from it is one parameter of its rule, so a job runs again when that changes and not
 # when the file is reordered, commented or touched. Sources are inputs, compared by content.
+import re
 import shlex
 import sys
 from pathlib import Path
@@ -40,7 +41,8 @@ LABEL = Label()
 wildcard_constraints:
     case="[0-9a-f]{16}",
     mesh=r"[0-9a-f]{16}\.(mesh|msh)",
-    figure="|".join(filter(drawn, PLAN.study.scenes)) or "none",
+    muscle="|".join(map(re.escape, PLAN.shown)) or "none",
+    figure="|".join(map(re.escape, filter(drawn, PLAN.study.scenes))) or "none",
 
 
 onstart:
@@ -55,6 +57,12 @@ def sources(*patterns, without=()):
 
 def record_of(case):
     return f"results/cases/{case}.h5"
+
+
+def mesh_sources(wildcards):
+    """All of geometry/ but what makes other kinds of files."""
+    other = "section" if wildcards.mesh.endswith(".mesh") else "meridian"
+    return sources("geometry/*.py", without=["geometry/whole.py", f"geometry/{other}.py"])
 
 
 def mesh_of(wildcards):
@@ -94,4 +102,5 @@ def figure_sources(wildcards):
     """A figure's own module, what all figures share, and what reads the records."""
     own = f"workflow/figures/{wildcards.figure}.py"
     others = [file for file in sources("workflow/figures/fig*.py") if file != own]
-    return sources("workflow/figures/*.py", "workflow/*.py", without=others)
+    shown = [] if wildcards.figure in PLAN.scenes else ["geometry/*.py"]
+    return sources("workflow/figures/*.py", "workflow/*.py", *shown, without=others)
