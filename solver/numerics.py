@@ -34,9 +34,12 @@ class Newton:
 
 @dataclass(frozen=True, kw_only=True)
 class Clamp:
-    """How a clamped end holds the tube: springs of density k min(s / ramp, 1)^2, s from the cap."""
+    """How a clamped end holds the tube: springs of density k min(s / ramp, 1)^2, s from the cap.
 
-    ramp: float = field(default=2.0, metadata={"unit": "mm"})
+    The ramp goes with the wall: a thick soft wall on a short ramp turns inside out.
+    """
+
+    ramp: float = field(default=1.0, metadata={"unit": "wall thickness"})
     thread_stiffness: float = field(default=200.0, metadata={"unit": "N/mm3"})  # on the layers
     inner_stiffness: float = field(default=20.0, metadata={"unit": "N/mm3"})  # on the inner surface
 

@@ -66,7 +66,7 @@ UNITS = {  # of /parameters
     "rubber/kappa": "MPa",
     "thread/stiffness": "N",
     "numerics/slack/stiffness": "N",
-    "numerics/clamp/ramp": "mm",
+    "numerics/clamp/ramp": "wall thickness",
     "numerics/clamp/thread_stiffness": "N/mm3",
     "numerics/clamp/inner_stiffness": "N/mm3",
 }

@@ -152,7 +152,7 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
         if case.effects.end is End.CLAMP:
             clamp = case.numerics.clamp
             values |= {
-                "clamp_ramp": clamp.ramp,
+                "clamp_ramp": clamp.ramp * muscle.wall_thickness,
                 "clamp_thread_stiffness": clamp.thread_stiffness,
                 "clamp_inner_stiffness": clamp.inner_stiffness,
             }
@@ -177,6 +177,9 @@ def _collect(
         if field_file.exists():
             table = np.loadtxt(field_file)
             fields[stop] = {name: table[:, part] for name, part in FIELDS[case.model].items()}
+    if case.muscle.braid is None:
+        for name in ("thread_stretch_min", "thread_stretch_max"):
+            states[name][:] = np.nan
 
 
 def _judge(
@@ -229,12 +232,11 @@ def _direct(model: str) -> Callable[[Case], Solution] | None:
 
 
 def _rows(path: Path) -> list[dict[str, float]]:
-    """Rows of a table of numbers; the last is dropped if it was cut off."""
+    """Rows of a table of numbers; a last line that was cut off is dropped."""
     if not path.exists():
         return []
-    with path.open() as file:
-        rows = [r for r in csv.DictReader(file) if None not in r.values()]
-    return [{name: float(value) for name, value in row.items()} for row in rows]
+    lines = [line for line in path.read_text().splitlines(keepends=True) if line.endswith("\n")]
+    return [{n: float(value) for n, value in row.items()} for row in csv.DictReader(lines)]
 
 
 def _with_diameter(solution: Solution) -> Solution:
