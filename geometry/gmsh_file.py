@@ -1,20 +1,21 @@
 """A gmsh model from nothing to a file that is whole or absent."""
 
 import os
-import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 
 @contextmanager
-def writing(path: Path, suffix: str) -> Iterator[None]:
+def writing(
+    path: Path, suffix: str, finish: Callable[[Path], None] = lambda _: None
+) -> Iterator[None]:
     """Build a gmsh model in the block; it is written to ``path`` when the block ends.
 
-    gmsh chooses the format by ``suffix``. Nothing is written if the block raises. The user's own
-    gmsh settings are not read, so that equal input gives equal bytes (STEP: in a fresh process, as
-    OpenCASCADE numbers its products through the life of one).
+    gmsh chooses the format by ``suffix``; ``finish`` may still change the file before it gets its
+    name. Nothing is written if the block raises. The user's own gmsh settings are not read, so
+    that equal input gives equal bytes.
 
     Raises
     ------
@@ -31,8 +32,7 @@ def writing(path: Path, suffix: str) -> Iterator[None]:
         aside.touch()  # gmsh would not say why it cannot
         with _silent():
             gmsh.write(str(aside))
-        if suffix == ".step":
-            _undate(aside)
+        finish(aside)
         os.replace(aside, path)
     finally:
         aside.unlink(missing_ok=True)
@@ -51,9 +51,3 @@ def _silent() -> Iterator[None]:
     finally:
         os.dup2(kept, 1)
         os.close(kept)
-
-
-def _undate(step: Path) -> None:
-    """Take the time of writing out of a STEP file's header."""
-    stamp = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d")
-    step.write_text(stamp.sub("", step.read_text(), count=1))

@@ -1,23 +1,25 @@
 """The whole muscle in three dimensions: tube, caps and every thread, for other programs (STEP).
 
 The axis is Z with mid-length at 0, lengths in mm. Threads are curves without thickness, as in the
-paper (section 2.2.1); caps are solid cylinders as wide as the tube.
+paper (section 2.2.1); caps are solid cylinders as wide as the tube. The parts have names: tube,
+cap 1, cap 2, thread clockwise 1, ...
 """
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.gmsh_file import writing
-from geometry.muscle import Muscle
+from geometry.muscle import Braid, Muscle, UnbuildableMuscle
 
-# A spline through 64 points a turn keeps within 1e-3 mm of helices up to a metre wide;
-# its error grows with the radius and falls with the fourth power of the points.
-POINTS_PER_TURN = 64
-MIN_POINTS = 16  # however small a part of a turn the muscle has
-TURNING = (1, -1)  # clockwise and counter-clockwise, going away from the viewer along Z
+DEVIATION = 1e-4  # of a thread's spline from its helix [mm]
+END_ERROR = 0.04  # of splines through points of a helix, see thread_points
+MIN_STEPS = 16  # of a spline, however small a part of a turn the muscle has
+MAX_POINTS = 20_000  # more is a slip of the pen, not a braid
+TURNING = {"clockwise": 1, "counter-clockwise": -1}  # by layer; going away from the viewer along Z
 
 
 def volume(muscle: Muscle) -> float:
@@ -25,18 +27,26 @@ def volume(muscle: Muscle) -> float:
     return math.pi * (muscle.outer_radius**2 - muscle.inner_radius**2) * muscle.length
 
 
-def thread_points(muscle: Muscle, layer: int) -> NDArray[np.float64]:
-    """Points along all threads of a layer (0 inner, 1 outer) of a braided muscle [mm].
+def thread_length(muscle: Muscle, layer: int) -> float:
+    """Length of each thread of a layer (0 inner, 1 outer) between the caps [mm]."""
+    return muscle.length / math.cos(_braid(muscle).layer_angles[layer])
+
+
+def thread_points(muscle: Muscle, layer: int, z: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points of all threads of a layer (0 inner, 1 outer) at given heights Z [mm].
 
     Returns
     -------
-    array of shape (threads, points, 3), from Z = -L/2 to L/2
+    array of shape (threads, heights, 3)
+
+    Raises
+    ------
+    ValueError
+        If the muscle is a bare tube.
     """
     braid = muscle.braid
     if braid is None:
         raise ValueError("a bare tube has no threads")
-    count = max(MIN_POINTS, math.ceil(POINTS_PER_TURN * muscle.length / braid.lead))
-    z = np.linspace(-muscle.length / 2, muscle.length / 2, count + 1)
     start = 2 * math.pi * np.arange(braid.threads) / braid.threads
     turn = start[:, None] + TURNING[layer] * 2 * math.pi * z / braid.lead
     radius = muscle.layer_radii[layer]
@@ -45,10 +55,18 @@ def thread_points(muscle: Muscle, layer: int) -> NDArray[np.float64]:
 
 
 def write(muscle: Muscle, path: Path) -> None:
-    """Write tube, caps and threads as a STEP file."""
+    """Write tube, caps and threads as a STEP file.
+
+    Raises
+    ------
+    UnbuildableMuscle
+        If its lead is too small for threads to be drawn one by one.
+    """
     import gmsh
 
-    with writing(path, ".step"):
+    threads = [thread_points(muscle, layer) for layer in range(len(muscle.layer_radii))]
+    names = ["tube"]
+    with writing(path, ".step", lambda step: _tidy(step, names)):
         occ = gmsh.model.occ
         half, outer = muscle.length / 2, muscle.outer_radius
         tube = occ.addCylinder(0, 0, -half, 0, 0, muscle.length, outer)
@@ -57,19 +75,46 @@ def write(muscle: Muscle, path: Path) -> None:
         if muscle.cap_length > 0:
             for side in (-1, 1):
                 occ.addCylinder(0, 0, side * half, 0, 0, side * muscle.cap_length, outer)
-        for layer in range(len(muscle.layer_radii)):
-            _add_threads(thread_points(muscle, layer))
+            names += ["cap 1", "cap 2"]
+        for points, turning in zip(threads, TURNING, strict=False):
+            count = _braid(muscle).threads
+            _add_threads(points, count)
+            names += [f"thread {turning} {number + 1}" for number in range(count)]
         occ.synchronize()
 
 
-def _add_threads(threads: NDArray[np.float64]) -> None:
+def _braid(muscle: Muscle) -> Braid:
+    """The braid of a muscle that must have one."""
+    if muscle.braid is None:
+        raise UnbuildableMuscle("braid", None, "a braid, where threads are asked for")
+    return muscle.braid
+
+
+def _add_threads(points: NDArray[np.float64], count: int) -> None:
     """One thread through its points, the others as copies of it turned about the axis."""
     import gmsh
 
     occ = gmsh.model.occ
-    points = [occ.addPoint(*point) for point in threads[0]]
-    first = (1, occ.addSpline(points))
-    occ.remove([(0, point) for point in points[1:-1]])
-    for number in range(1, len(threads)):
+    tags = [occ.addPoint(*point) for point in points]
+    first = (1, occ.addSpline(tags))
+    occ.remove([(0, tag) for tag in tags[1:-1]])
+    for number in range(1, count):
         copy = occ.copy([first])
-        occ.rotate(copy, 0, 0, 0, 0, 0, 1, 2 * math.pi * number / len(threads))
+        occ.rotate(copy, 0, 0, 0, 0, 0, 1, 2 * math.pi * number / count)
+
+
+def _tidy(step: Path, names: list[str]) -> None:
+    """Name the parts of a STEP file, and take out what differs from one writing to the next.
+
+    That is the time in the header, and numbers that OpenCASCADE counts through a process.
+    """
+
+    def name(found: re.Match[str]) -> str:
+        part = found["part"]
+        return f"'{names[int(part) - 1]}'" if part else "'muscle'"
+
+    text = re.sub(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d", "", step.read_text(), count=1)
+    text = re.sub(r"'Open CASCADE STEP translator [\d.]+ \d+(\.(?P<part>\d+))?'", name, text)
+    numbers = iter(range(1, len(names) + 1))
+    text = re.sub(r"(?<=OCCURRENCE\(')\d+", lambda _: str(next(numbers)), text)
+    step.write_text(text)
