@@ -28,6 +28,7 @@ from workflow.schema import (
 from workflow.study_error import choices
 from workflow.study_file import Keys, Source
 
+CAP_PER_WALL = 4  # length in the fitting by wall thickness, unless given (docs/decisions/0004)
 SHAPE_KEYS = ("inner_diameter", "wall_thickness", "length", "cap_length")
 EA = "thread_stiffness"
 BRAID_KEYS = ("layer_depths", "lead", "angle", "angle_of", EA)
@@ -130,7 +131,8 @@ class _Muscles:
             values, keys = self.complete(name), ("muscles", name)
             bare = values.get("threads") == "none"
             self._check_keys(keys, values, BRAID_KEYS if bare else ())
-            shape = {key: values[key] for key in SHAPE_KEYS if key in values}
+            cap_length = CAP_PER_WALL * values["wall_thickness"]
+            shape = {"cap_length": cap_length} | {k: values[k] for k in SHAPE_KEYS if k in values}
             checked = self.source.checked
             tube = checked(keys, Muscle, shape | {"braid": None})
             self._built[name] = StudiedMuscle(
