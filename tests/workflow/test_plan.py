@@ -81,7 +81,7 @@ CHANGES = [
     ("length: 300", "length: 200", WITH_CAPS),
     ("    lead: 144", "    lead: 144\n    cap_length: 9", {**SOLID, "variant": ("default",)}),
     ("[0.3, 0.9]", "[0.3, 1]", ALL),
-    ("threads: 60", "threads: 61", WITH_WALL),
+    ("threads: 60", "threads: 61", ALL),
     ("lead: 144", "lead: 145", ALL),
     ("lead: 144", "angle: 17.1", ALL),
     ("thread_stiffness: 315", "thread_stiffness: 300", WITH_WALL),
