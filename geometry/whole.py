@@ -16,9 +16,9 @@ from geometry.gmsh_file import writing
 from geometry.muscle import Braid, Muscle, UnbuildableMuscle
 
 DEVIATION = 1e-4  # of a thread's spline from its helix [mm]
-END_ERROR = 0.04  # of splines through points of a helix, see thread_points
+END_ERROR = 0.04  # of splines through points of a helix, see spline_heights
 MIN_STEPS = 16  # of a spline, however small a part of a turn the muscle has
-MAX_POINTS = 20_000  # more is a slip of the pen, not a braid
+MAX_STEPS = 20_000  # more is a slip of the pen, not a braid
 TURNING = {"clockwise": 1, "counter-clockwise": -1}  # by layer; going away from the viewer along Z
 
 
@@ -41,17 +41,34 @@ def thread_points(muscle: Muscle, layer: int, z: NDArray[np.float64]) -> NDArray
 
     Raises
     ------
-    ValueError
-        If the muscle is a bare tube.
+    UnbuildableMuscle
+        If the muscle has no braid.
     """
-    braid = muscle.braid
-    if braid is None:
-        raise ValueError("a bare tube has no threads")
+    braid, radius = _braid(muscle), muscle.layer_radii[layer]
     start = 2 * math.pi * np.arange(braid.threads) / braid.threads
-    turn = start[:, None] + TURNING[layer] * 2 * math.pi * z / braid.lead
-    radius = muscle.layer_radii[layer]
+    turn = start[:, None] + tuple(TURNING.values())[layer] * 2 * math.pi * z / braid.lead
     points = radius * np.cos(turn), radius * np.sin(turn), np.broadcast_to(z, turn.shape)
     return np.stack(points, axis=-1)
+
+
+def spline_heights(muscle: Muscle, layer: int) -> NDArray[np.float64]:
+    """Heights Z of the points through which the splines of a layer pass, -L/2 to L/2 [mm].
+
+    A spline through points of a helix a step apart (an angle) deviates most in its first and last
+    interval, measured as END_ERROR radius step^4; between them by a third of that.
+
+    Raises
+    ------
+    UnbuildableMuscle
+        If there is no braid, or so small a lead that this takes too many points.
+    """
+    lead, half = _braid(muscle).lead, muscle.length / 2
+    step = (DEVIATION / (END_ERROR * muscle.layer_radii[layer])) ** 0.25
+    count = max(MIN_STEPS, math.ceil(2 * math.pi * muscle.length / lead / step))
+    if count > MAX_STEPS:
+        least = lead * count / MAX_STEPS
+        raise UnbuildableMuscle("lead", lead, f"at least {least:.3g} mm, to draw every thread")
+    return np.linspace(-half, half, count + 1)
 
 
 def write(muscle: Muscle, path: Path) -> None:
@@ -64,7 +81,10 @@ def write(muscle: Muscle, path: Path) -> None:
     """
     import gmsh
 
-    threads = [thread_points(muscle, layer) for layer in range(len(muscle.layer_radii))]
+    threads = [
+        thread_points(muscle, layer, spline_heights(muscle, layer))
+        for layer in range(len(muscle.layer_radii))
+    ]
     names = ["tube"]
     with writing(path, ".step", lambda step: _tidy(step, names)):
         occ = gmsh.model.occ
@@ -76,10 +96,9 @@ def write(muscle: Muscle, path: Path) -> None:
             for side in (-1, 1):
                 occ.addCylinder(0, 0, side * half, 0, 0, side * muscle.cap_length, outer)
             names += ["cap 1", "cap 2"]
-        for points, turning in zip(threads, TURNING, strict=False):
-            count = _braid(muscle).threads
-            _add_threads(points, count)
-            names += [f"thread {turning} {number + 1}" for number in range(count)]
+        for layer, turning in zip(threads, TURNING, strict=False):
+            _add_threads(layer)
+            names += [f"thread {turning} {number}" for number in range(1, len(layer) + 1)]
         occ.synchronize()
 
 
@@ -90,17 +109,17 @@ def _braid(muscle: Muscle) -> Braid:
     return muscle.braid
 
 
-def _add_threads(points: NDArray[np.float64], count: int) -> None:
+def _add_threads(threads: NDArray[np.float64]) -> None:
     """One thread through its points, the others as copies of it turned about the axis."""
     import gmsh
 
     occ = gmsh.model.occ
-    tags = [occ.addPoint(*point) for point in points]
+    tags = [occ.addPoint(*point) for point in threads[0]]
     first = (1, occ.addSpline(tags))
     occ.remove([(0, tag) for tag in tags[1:-1]])
-    for number in range(1, count):
+    for number in range(1, len(threads)):
         copy = occ.copy([first])
-        occ.rotate(copy, 0, 0, 0, 0, 0, 1, 2 * math.pi * number / count)
+        occ.rotate(copy, 0, 0, 0, 0, 0, 1, 2 * math.pi * number / len(threads))
 
 
 def _tidy(step: Path, names: list[str]) -> None:
