@@ -10,9 +10,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from workflow.figures import curves, fig10
+from workflow.figures import curves, force_contraction
 from workflow.figures.labels import SERIES, constants
-from workflow.figures.states import CONTRACTION, FORCE, GOOD, PRESSURE
+from workflow.figures.states import CONTRACTION, DIAMETER, FORCE, GOOD, PRESSURE, THREADS
 from workflow.figures.style import COLUMN_WIDTH, panels, percent
 
 RATIO = "force / force of the narrowest [1]"
@@ -26,13 +26,13 @@ TICKS = (1, 2, 3, 4, 6, 10, 20, 40, 100)
 
 def table(data: Any) -> pd.DataFrame:
     """Ratios of all muscles but the narrowest; a state counts as the worse of the two."""
-    every = fig10.table(data)
+    every = force_contraction.table(data, [DIAMETER, THREADS])
     narrowest = min(data.muscles, key=lambda name: (data.muscles[name].inner_diameter, name))
     every[SHARE] = every[FORCE] / every.groupby([*CURVE, "muscle"])[FORCE].transform("max")
     at = [*CURVE, CONTRACTION]
-    base = every[every["muscle"] == narrowest].set_index(at)[[FORCE, SHARE, "status", SERIES]]
+    base = every[every["muscle"] == narrowest][[*at, FORCE, SHARE, "status", SERIES]]
     wider = every[every["muscle"] != narrowest].drop(columns=SHARE)
-    both = wider.join(base, on=at, rsuffix=f" {NARROWEST}")
+    both = wider.merge(base, "left", at, suffixes=("", f" {NARROWEST}"))
     worse = both["status"].where(both["status"] != GOOD, both[f"status {NARROWEST}"])
     both = both.rename(columns={f"{SERIES} {NARROWEST}": NARROWEST})
     return both.assign(

@@ -1,0 +1,103 @@
+"""Failed states are not drawn as if they had not failed."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+
+from solver.status import StateStatus
+from workflow.figures import curves
+from workflow.figures.labels import SERIES
+from workflow.figures.states import CONTRACTION, FORCE, PRESSURE, states
+
+
+@pytest.fixture
+def drawn(small_scene, fail):
+    """The lines of a curve of 5 states of which some have a status: label -> finite x values."""
+
+    def lines(status, *numbers):
+        table = states(small_scene(lambda solution: fail(solution, status, *numbers)), ["force"])
+        ax = Figure().add_subplot()
+        curves.by_source(ax, table, CONTRACTION, FORCE)
+        found = {}
+        for line in ax.lines:
+            x, y = np.array(line.get_xdata(), float), np.array(line.get_ydata(), float)
+            found[line.get_label()] = x[np.isfinite(y)].tolist()
+        return found
+
+    return lines
+
+
+def test_converged_states_are_one_line(drawn):
+    assert drawn(StateStatus.CONVERGED) == {"FE solid": [0, 0.05, 0.1, 0.15, 0.2]}
+
+
+@pytest.mark.parametrize("status", [StateStatus.NOT_REACHED, StateStatus.INVALID_STATE])
+def test_a_gap_stays_a_gap(drawn, status):
+    assert drawn(status, 2) == {"FE solid": [0, 0.05, 0.15, 0.2]}
+
+
+def test_the_line_stops_at_the_gap(small_scene, fail):
+    """Its y is NaN there, so that matplotlib joins nothing across."""
+    spoiled = small_scene(lambda solution: fail(solution, StateStatus.INVALID_STATE, 2))
+    ax = Figure().add_subplot()
+    curves.by_source(ax, states(spoiled, ["force"]), CONTRACTION, FORCE)
+    assert np.isnan(ax.lines[0].get_ydata()[2])
+
+
+def test_unstable_states_are_open_circles(small_scene, fail):
+    spoiled = small_scene(lambda solution: fail(solution, StateStatus.UNSTABLE, 3, 4))
+    ax = Figure().add_subplot()
+    curves.by_source(ax, states(spoiled, ["force"]), CONTRACTION, FORCE)
+    line, circles = ax.lines
+    assert np.isnan(line.get_ydata()[3:]).all()
+    assert circles.get_label() == "unstable"
+    assert circles.get_linestyle() == "None"
+    assert circles.get_markerfacecolor() == "white"
+    assert list(circles.get_xdata()) == [0.15, 0.2]
+
+
+def test_a_state_between_gaps_is_a_dot(drawn):
+    assert drawn(StateStatus.NOT_REACHED, 0, 1, 3)["_lonely"] == [0.1, 0.2]
+
+
+def test_series_without_states_keep_the_look_of_the_others(small_scene, fail):
+    scene = small_scene(models=("solid", "membrane"))
+    table = states(scene, ["force"]).assign(**{SERIES: "only"})
+    ax = Figure().add_subplot()
+    curves.by_series(ax, table, CONTRACTION, FORCE)
+    colours = {line.get_color() for line in ax.lines}
+    assert len(ax.lines) == 2
+    assert len(colours) == 1  # the colour tells series apart, the line models
+    assert len({line.get_linewidth() for line in ax.lines}) == 2
+
+
+def test_note_names_curve_status_and_place():
+    table = pd.DataFrame(
+        {
+            "source": ["solid"] * 3 + ["membrane"],
+            PRESSURE: [0.2, 0.2, 0.2, 0.3],
+            CONTRACTION: [0.23, 0.24, 0.25, 0.25],
+            "status": ["converged", "not_reached", "not_reached", "invalid_state"],
+        }
+    )
+    figure = Figure(figsize=(7, 3))
+    curves.note_gaps(figure, table, [PRESSURE], CONTRACTION)
+    text = figure.texts[0].get_text().replace("\n", " ")
+    assert "FE solid, 0.2 MPa: 2 states not reached from 24 % to 25 %" in text
+    assert "FE membrane, 0.3 MPa: 1 state invalid state at 25 %" in text
+    assert figure.get_size_inches()[1] > 3
+
+
+def test_no_note_without_gaps(small_scene):
+    figure = Figure(figsize=(7, 3))
+    curves.note_gaps(figure, states(small_scene(), ["force"]), [PRESSURE], CONTRACTION)
+    assert figure.texts == []
+    assert figure.get_size_inches()[1] == 3
+
+
+def test_states_that_failed_have_no_numbers_in_the_table(small_scene, fail):
+    spoiled = small_scene(lambda solution: fail(solution, StateStatus.INVALID_STATE, 1))
+    table = states(spoiled, ["force"])
+    assert table[FORCE].isna().tolist() == [False, True, False, False, False]
+    assert table["status"].tolist()[1] == "invalid_state"
