@@ -4,10 +4,11 @@ SPEC is a JSON file (or - for standard input) that says what to make::
 
     {"kind": "meridian", "muscle": {...}, "mesh": {...}}                  -> Medit .mesh
     {"kind": "section", "end": "clamp", "muscle": {...}, "mesh": {...}}   -> MSH 2.2
+    {"kind": "cell", "thread_radius": 0.3, "muscle": {...}, "mesh": {...}} -> Medit .mesh
     {"kind": "whole", "muscle": {...}}                                    -> STEP
 
-with the fields of Muscle, MeridianMesh and SectionMesh. Ends with status 2 and one message if that
-cannot be built.
+with the fields of Muscle, MeridianMesh, SectionMesh and CellMesh. Ends with status 2 and one message
+if that cannot be built.
 """
 
 import argparse
@@ -17,7 +18,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from geometry import meridian, section, whole
+from geometry import cell, meridian, section, whole
 from geometry.grading import UnbuildableMesh
 from geometry.muscle import Muscle
 from geometry.refusal import Refusal, build
@@ -25,6 +26,7 @@ from geometry.refusal import Refusal, build
 KEYS = {
     "meridian": {"kind", "muscle", "mesh"},
     "section": {"kind", "muscle", "mesh", "end"},
+    "cell": {"kind", "muscle", "mesh", "thread_radius"},
     "whole": {"kind", "muscle"},
 }
 
@@ -49,6 +51,9 @@ def make(spec: Mapping[str, Any], output: Path) -> None:
     elif kind == "section":
         section_mesh = build(section.SectionMesh, spec["mesh"], UnbuildableMesh, "mesh")
         section.write(muscle, section_mesh, spec["end"], output)
+    elif kind == "cell":
+        cell_mesh = build(cell.CellMesh, spec["mesh"], UnbuildableMesh, "mesh")
+        cell.write(muscle, cell_mesh, spec["thread_radius"], output)
     else:
         whole.write(muscle, output)
 

@@ -1,0 +1,180 @@
+r"""The periodic cell of the braid: what repeats around and along the tube, as tetrahedra.
+
+One sector between neighbouring threads, one axial thread spacing long. It is meshed as a box, in
+cylindrical coordinates of the reference shape: x = R, y = R_m T with R_m the mean radius of the
+wall, z = Z, in mm, so that periodic faces match by translation and curved walls cost nothing. The
+thread of each layer is a diagonal of the box::
+
+    Z = spacing +---------+          LAYER_1 rises with T, LAYER_2 falls; they cross in the middle
+                | \     / |          and at the corners, which are one point of the muscle
+                |   \ /   |
+                |   / \   |
+                | /     \ |
+    Z = 0       +---------+
+                T = 0     T = 2 pi / sectors
+
+A thread is no volume of the mesh: the solver spreads it over a tube of a given radius, and the mesh
+is finer there.
+"""
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from geometry.gmsh_file import writing
+from geometry.grading import UnbuildableMesh
+from geometry.labels import Boundary, Region
+from geometry.muscle import Muscle
+from geometry.refusal import is_count, is_number
+
+# Faces of a gmsh box in the order of their tags.
+FACES = (
+    Boundary.INNER,
+    Boundary.OUTER,
+    Boundary.ANGLE_LOW,
+    Boundary.ANGLE_HIGH,
+    Boundary.AXIAL_LOW,
+    Boundary.AXIAL_HIGH,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CellMesh:
+    """Sizes of the tetrahedra: near a thread, and how they grow away from it.
+
+    ``refinement`` m divides all sizes by m. ``repeats`` is the number of cells along the axis that
+    are meshed as one: the muscle is the same with any, so it is for tests.
+
+    Raises
+    ------
+    UnbuildableMesh
+        Naming the field, its value and what is allowed.
+    """
+
+    thread_size: float = field(default=1.0, metadata={"unit": "thread radius"})
+    body_size: float = field(default=0.3, metadata={"unit": "wall thickness"})
+    growth: float = field(default=0.5, metadata={"unit": "1"})  # of the size, with the distance
+    refinement: int = field(default=1, metadata={"unit": "1"})
+    repeats: int = field(default=1, metadata={"unit": "1"})
+
+    def __post_init__(self) -> None:
+        for name in ("thread_size", "body_size", "growth"):
+            value = getattr(self, name)
+            if not (is_number(value) and value > 0):
+                raise UnbuildableMesh(name, value, "a finite number > 0")
+        for name in ("refinement", "repeats"):
+            if not is_count(getattr(self, name)):
+                raise UnbuildableMesh(name, getattr(self, name), "an integer >= 1")
+
+
+@dataclass(frozen=True)
+class Box:
+    """The cell of a muscle: how often it repeats, and its sides.
+
+    A bare tube has no braid to repeat; its cell is about as wide and long as the wall is thick.
+    """
+
+    muscle: Muscle
+
+    @property
+    def mean_radius(self) -> float:
+        """Radius at which y is arc length, that of the wall's middle [mm]."""
+        return (self.muscle.inner_radius + self.muscle.outer_radius) / 2
+
+    @property
+    def sectors(self) -> int:
+        """Cells around the tube."""
+        if self.muscle.braid is not None:
+            return self.muscle.braid.threads
+        return max(3, round(2 * math.pi * self.mean_radius / self.muscle.wall_thickness))
+
+    @property
+    def width(self) -> float:
+        """Extent along y [mm]."""
+        return 2 * math.pi * self.mean_radius / self.sectors
+
+    @property
+    def spacing(self) -> float:
+        """Extent along the axis of one cell [mm]."""
+        braid = self.muscle.braid
+        return braid.axial_spacing if braid is not None else self.muscle.wall_thickness
+
+    def distance(self, x: float, y: float, z: float) -> float:
+        """From a point of the box to the nearest thread, other cells' included [mm]."""
+        if self.muscle.braid is None:
+            return math.inf
+        nearest = math.inf
+        share, step = y / self.width, z / self.spacing
+        for sense, radius, angle in zip(
+            (1, -1), self.muscle.layer_radii, self.muscle.braid.layer_angles, strict=True
+        ):
+            turns = share - sense * step
+            arc = (turns - round(turns)) * 2 * math.pi * radius / self.sectors
+            nearest = min(nearest, math.hypot(x - radius, arc * math.cos(angle)))
+        return nearest
+
+
+def volume(muscle: Muscle, mesh: CellMesh) -> float:
+    """Volume of the meshed box, in its own coordinates [mm3]."""
+    box = Box(muscle)
+    return muscle.wall_thickness * box.width * box.spacing * mesh.repeats
+
+
+def write(muscle: Muscle, mesh: CellMesh, thread_radius: float | None, path: Path) -> None:
+    """Write the cell as a Medit file for FreeFEM's ``readmesh3``, faces labelled.
+
+    ``thread_radius`` is that of the tubes over which the threads are spread [mm]; None for a bare
+    tube.
+
+    Raises
+    ------
+    UnbuildableMesh
+        If the thread radius is no positive number, or given for a bare tube.
+    """
+    import gmsh
+
+    if (thread_radius is None) is not (muscle.braid is None):
+        raise UnbuildableMesh("thread_radius", thread_radius, "a number with a braid, else none")
+    if thread_radius is not None and not (is_number(thread_radius) and thread_radius > 0):
+        raise UnbuildableMesh("thread_radius", thread_radius, "a finite number > 0 (mm)")
+    box = Box(muscle)
+    length = box.spacing * mesh.repeats
+    with writing(path, ".mesh"):
+        gmsh.model.occ.addBox(
+            muscle.inner_radius, 0, 0, muscle.wall_thickness, box.width, length, tag=1
+        )
+        gmsh.model.occ.synchronize()
+        for label in FACES:
+            gmsh.model.addPhysicalGroup(2, [FACES.index(label) + 1], label, label.name)
+        gmsh.model.addPhysicalGroup(3, [1], Region.WALL, Region.WALL.name)
+        _make_periodic(Boundary.ANGLE_LOW, Boundary.ANGLE_HIGH, (0, box.width, 0))
+        _make_periodic(Boundary.AXIAL_LOW, Boundary.AXIAL_HIGH, (0, 0, length))
+        _set_sizes(box, mesh, thread_radius)
+        gmsh.option.setNumber("Mesh.SaveElementTagType", 2)  # faces labelled by their group
+        gmsh.model.mesh.generate(3)
+
+
+def _make_periodic(low: Boundary, high: Boundary, shift: tuple[float, float, float]) -> None:
+    """The mesh of one face is that of the opposite one, moved by ``shift``."""
+    import gmsh
+
+    x, y, z = shift
+    motion = [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]
+    gmsh.model.mesh.setPeriodic(2, [FACES.index(high) + 1], [FACES.index(low) + 1], motion)
+
+
+def _set_sizes(box: Box, mesh: CellMesh, thread_radius: float | None) -> None:
+    """Element sizes by the distance to the nearest thread."""
+    import gmsh
+
+    body = mesh.body_size * box.muscle.wall_thickness / mesh.refinement
+    radius = math.inf if thread_radius is None else thread_radius
+    near = min(mesh.thread_size * radius / mesh.refinement, body)
+
+    def size(_dim: int, _tag: int, x: float, y: float, z: float, _size: float) -> float:
+        outside = max(box.distance(x, y, z) - radius, 0) if thread_radius is not None else 0
+        return min(near + mesh.growth * outside, body)
+
+    for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
+        gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
+    gmsh.model.mesh.setSizeCallback(size)
