@@ -149,26 +149,36 @@ def read(path: Path) -> tuple[Case, Solution]:
 
     try:
         with h5py.File(path) as file:
-            found = file.attrs.get("filetype"), file.attrs.get("layout")
-            if found != (FILETYPE, LAYOUT):
-                raise NoRecord(f"{path}: expected {FILETYPE}, layout {LAYOUT}; found {found}")
-            case = Case.from_json(file.attrs["case"])
-            if case.key != file.attrs["key"]:
-                raise NoRecord(f"{path}: its case is {case.key}, its key {file.attrs['key']}")
-            states = file["states"]
-            return case, Solution(
-                status=CaseStatus(file.attrs["status"]),
-                reason=file.attrs["reason"],
-                log=file.attrs["log"],
-                states={name: states[name][()] for name in VARIABLES},
-                state_status=[StateStatus(s.decode()) for s in states["status"][()]],
-                fields={
-                    int(number): {name: data[()] for name, data in group.items()}
-                    for number, group in file.get("fields", {}).items()
-                },
-            )
-    except (OSError, KeyError, RuntimeError) as error:
+            return _read(file)
+    except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:
         raise NoRecord(f"{path}: no readable record ({error})") from error
+
+
+def _read(file: Any) -> tuple[Case, Solution]:
+    """Case and solution of an open file; raises ValueError and others if it is no record."""
+    found = file.attrs.get("filetype"), file.attrs.get("layout")
+    if found != (FILETYPE, LAYOUT):
+        raise ValueError(f"expected {FILETYPE}, layout {LAYOUT}; found {found}")
+    case = Case.from_json(file.attrs["case"])
+    if case.key != file.attrs["key"]:
+        raise ValueError(f"its case is {case.key}, its key {file.attrs['key']}")
+    states = file["states"]
+    for name, data in states.items():
+        if data.shape != (case.path.states,):
+            raise ValueError(
+                f"{name} has the shape {data.shape}, the path {case.path.states} states"
+            )
+    return case, Solution(
+        status=CaseStatus(file.attrs["status"]),
+        reason=file.attrs["reason"],
+        log=file.attrs["log"],
+        states={name: states[name][()] for name in VARIABLES},
+        state_status=[StateStatus(s.decode()) for s in states["status"][()]],
+        fields={
+            int(number): {name: data[()] for name, data in group.items()}
+            for number, group in file.get("fields", {}).items()
+        },
+    )
 
 
 def code_digest() -> str:

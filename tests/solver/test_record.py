@@ -1,0 +1,227 @@
+"""The record of a case: what was written is read, and only a whole record is one."""
+
+import json
+import time
+
+import h5py
+import numpy as np
+import pytest
+
+from solver import record
+from solver.effects import Effects
+from solver.load_path import LoadPath
+from solver.record import VARIABLES, NoRecord, Solution, unreached
+from solver.status import CaseStatus, StateStatus
+
+
+@pytest.fixture
+def case(make_case):
+    path = LoadPath(kind="isobaric", held=0.3, stops=(0.0, 0.1, 0.2))
+    return make_case(model="solid", path=path, fields_at=(0.1,))
+
+
+@pytest.fixture
+def solution():
+    """Two states of three, each variable with values of its own, and the fields of one."""
+    states = unreached(3)
+    for k, values in enumerate(states.values()):
+        values[:2] = [k + 0.1, -k - 1 / 3]
+    corners = np.arange(24, dtype=float).reshape(6, 4)
+    return Solution(
+        status=CaseStatus.STALLED,
+        reason="no state found beyond 15 % · ε",
+        states=states,
+        state_status=[StateStatus.CONVERGED, StateStatus.UNSTABLE, StateStatus.NOT_REACHED],
+        fields={1: {"corners": corners, "stress": -corners}},
+        log="line 1\nline 2",
+    )
+
+
+@pytest.fixture
+def written(tmp_path, case, solution):
+    path = tmp_path / "case.h5"
+    record.write(path, case, solution)
+    return path
+
+
+def test_round_trip(written, case, solution):
+    case_read, read = record.read(written)
+    assert case_read.canonical() == case.canonical()
+    assert (read.status, read.reason, read.log) == (
+        solution.status,
+        solution.reason,
+        solution.log,
+    )
+    assert read.state_status == solution.state_status
+    assert read.states.keys() == VARIABLES.keys()
+    for name in VARIABLES:
+        np.testing.assert_array_equal(read.states[name], solution.states[name])
+    assert read.fields.keys() == {1}
+    for name in ("corners", "stress"):
+        np.testing.assert_array_equal(read.fields[1][name], solution.fields[1][name])
+
+
+@pytest.mark.parametrize("model", ["geometric", "cylinder", "membrane", "solid"])
+@pytest.mark.parametrize("kind", ["isobaric", "isometric", "isotonic"])
+def test_every_kind_of_case_can_be_written(tmp_path, make_case, model, kind):
+    path = LoadPath(kind=kind, held=0.1, stops=(0.1, 0.2))
+    case = make_case(model=model, path=path)
+    failed = Solution(
+        status=CaseStatus.TIMEOUT,
+        reason="late",
+        states=unreached(2),
+        state_status=[StateStatus.NOT_REACHED] * 2,
+    )
+    record.write(tmp_path / "a.h5", case, failed)
+    assert record.read(tmp_path / "a.h5")[0].key == case.key
+
+
+def test_a_bare_tube_can_be_written(tmp_path, make_case, bare_tube, solution):
+    path = LoadPath(kind="isometric", held=0.0, stops=(0.0, 0.1, 0.2))
+    case = make_case(model="solid", muscle=bare_tube, effects=Effects(end="sliding"), path=path)
+    record.write(tmp_path / "a.h5", case, solution)
+    assert record.read(tmp_path / "a.h5")[0].muscle == bare_tube
+
+
+def test_numbers_have_units(written):
+    with h5py.File(written) as file:
+        for name, (unit, long_name) in VARIABLES.items():
+            assert file["states"][name].attrs["units"] == unit
+            assert file["states"][name].attrs["long_name"] == long_name
+        parameters = {}
+        file["parameters"].visititems(
+            lambda name, item: parameters.update({name: item})
+            if isinstance(item, h5py.Dataset)
+            else None
+        )
+        units = {name: item.attrs["units"] for name, item in parameters.items()}
+        assert units["muscle/inner_diameter"] == "mm"
+        assert units["muscle/braid/layer_diameters"] == "mm"
+        assert units["rubber/kappa"] == "MPa"
+        assert units["thread/stiffness"] == "N"
+        assert units["path/held"] == "MPa"
+        assert units["path/stops"] == "1"
+        assert units["numerics/clamp/inner_stiffness"] == "N/mm3"
+        assert units["muscle/braid/threads"] == "1"
+        assert parameters["muscle/inner_diameter"][()] == 20
+        np.testing.assert_array_equal(parameters["path/stops"][()], [0, 0.1, 0.2])
+
+
+@pytest.mark.parametrize(
+    ("kind", "held", "stops"),
+    [("isobaric", "MPa", "1"), ("isometric", "1", "MPa"), ("isotonic", "N", "MPa")],
+)
+def test_units_of_the_path(tmp_path, make_case, solution, kind, held, stops):
+    path = LoadPath(kind=kind, held=0.1, stops=(0.1, 0.2, 0.3))
+    record.write(tmp_path / "a.h5", make_case(path=path), solution)
+    with h5py.File(tmp_path / "a.h5") as file:
+        assert file["parameters/path/held"].attrs["units"] == held
+        assert file["parameters/path/stops"].attrs["units"] == stops
+
+
+def test_the_passport(written, case):
+    with h5py.File(written) as file:
+        assert file.attrs["key"] == case.key
+        assert file.attrs["case"] == case.canonical()
+        assert file.attrs["code"] == record.code_digest()
+
+
+def test_written_again_the_bytes_are_the_same(tmp_path, written, case, solution):
+    time.sleep(1.1)  # HDF5 counts time in seconds
+    again = tmp_path / "again.h5"
+    record.write(again, case, solution)
+    assert again.read_bytes() == written.read_bytes()
+
+
+def test_a_record_is_whole_or_absent(tmp_path, case, solution):
+    """A write that fails half way leaves nothing, and what was there before."""
+    path = tmp_path / "case.h5"
+    broken = Solution(**vars(solution) | {"states": {"force": np.zeros(3)}})
+    with pytest.raises(KeyError):
+        record.write(path, case, broken)
+    assert list(tmp_path.iterdir()) == []
+    record.write(path, case, solution)
+    before = path.read_bytes()
+    with pytest.raises(KeyError):
+        record.write(path, case, broken)
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_bytes() == before
+
+
+# --- what is no record ----------------------------------------------------------------------------
+
+
+def assert_no_record(path):
+    with pytest.raises(NoRecord) as refused:
+        record.read(path)
+    assert str(path) in str(refused.value)
+
+
+def test_absent(tmp_path):
+    assert_no_record(tmp_path / "absent.h5")
+
+
+@pytest.mark.parametrize("content", [b"", b"not HDF5", b"\x89HDF\r\n\x1a\n"])
+def test_foreign_file(tmp_path, content):
+    path = tmp_path / "foreign.h5"
+    path.write_bytes(content)
+    assert_no_record(path)
+
+
+def test_foreign_hdf5(tmp_path):
+    path = tmp_path / "foreign.h5"
+    with h5py.File(path, "w") as file:
+        file["states"] = 1
+    assert_no_record(path)
+
+
+@pytest.mark.parametrize("share", [0.01, 0.1, 0.5, 0.9, 0.999])
+def test_truncated(written, share):
+    content = written.read_bytes()
+    written.write_bytes(content[: int(share * len(content))])
+    assert_no_record(written)
+
+
+@pytest.mark.parametrize(
+    ("attribute", "value"),
+    [
+        ("layout", record.LAYOUT + 1),
+        ("filetype", "other"),
+        ("key", "0123456789abcdef"),
+        ("status", "perfect"),
+        ("case", "{"),
+        ("case", "{}"),
+        ("case", json.dumps([1])),
+    ],
+)
+def test_damaged_attribute(written, attribute, value):
+    with h5py.File(written, "a") as file:
+        file.attrs[attribute] = value
+    assert_no_record(written)
+
+
+@pytest.mark.parametrize("attribute", ["layout", "filetype", "key", "case", "status", "reason"])
+def test_missing_attribute(written, attribute):
+    with h5py.File(written, "a") as file:
+        del file.attrs[attribute]
+    assert_no_record(written)
+
+
+@pytest.mark.parametrize("name", ["states", "states/force", "states/status"])
+def test_missing_dataset(written, name):
+    with h5py.File(written, "a") as file:
+        del file[name]
+    assert_no_record(written)
+
+
+def test_states_of_another_length(written):
+    with h5py.File(written, "a") as file:
+        del file["states/force"]
+        file["states/force"] = np.zeros(2)
+    assert_no_record(written)
+
+
+def test_unknown_word_for_a_state(written):
+    with h5py.File(written, "a") as file:
+        file["states/status"][0] = b"fine"
+    assert_no_record(written)
