@@ -17,6 +17,7 @@ from solver.load_path import Waypoint
 from solver.record import VARIABLES, Solution, unreached
 from solver.status import CaseStatus, StateStatus, case_status, state_status
 
+LIMITS = ("fold", "asymptote", "crumpling", "overhang")  # kinds of limit that solver/edp names
 FIELDS = {  # columns of fields_<waypoint>.txt, by model
     "membrane": {"meridian": slice(0, 4)},
     "solid": {"corners": slice(0, 4), "stress": slice(4, 8)},
@@ -191,7 +192,7 @@ def _judge(
 ) -> Solution:
     """Status of every state and of the case, with the reason in words."""
     each = state_status(case.path.kind, states)
-    limited = end.reason.startswith(("fold", "asymptote"))
+    limited = end.reason.startswith(LIMITS)
     status = end.status or case_status(each, limited)
     reason = "" if status is CaseStatus.CONVERGED else end.reason
     if status is CaseStatus.INVALID_STATE:

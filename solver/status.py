@@ -21,7 +21,7 @@ class CaseStatus(StrEnum):
     """Of a whole path."""
 
     CONVERGED = "converged"  # every stop reached with a valid state
-    LIMIT_POINT = "limit_point"  # no equilibrium further on
+    LIMIT_POINT = "limit_point"  # no equilibrium further on; the reason names its kind
     STALLED = "stalled"  # Newton needs steps below the smallest; why is not known
     INVALID_STATE = "invalid_state"  # every stop reached, but not every state is valid
     MESH_FAILED = "mesh_failed"
