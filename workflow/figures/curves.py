@@ -30,17 +30,20 @@ NOTE_LINE = 0.14  # inch
 
 
 def by_source(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
-    """One curve for each model, variant and reference map; ``style`` goes before theirs."""
+    """One curve for each model, muscle, variant and reference map; ``style`` goes before theirs."""
     for source in SOURCES:
-        for variant, each in rows[rows["source"] == source].groupby("variant", dropna=False):
-            curve(ax, each, x, y, **style_of(source, variant) | style)
+        found = rows[rows["source"] == source].groupby(["muscle", "variant"], dropna=False)
+        for number, (key, each) in enumerate(found):
+            name = ", ".join(map(str, key)) if len(found) > 1 else ""
+            curve(ax, each, x, y, **style_of(source, name, number) | style)
 
 
 def by_series(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
-    """One curve for each series, model and variant: colour and marker by series, line by model."""
+    """One curve for each series and model: colour and marker by series, line by model."""
     for number, (_, each) in enumerate(rows.groupby(SERIES, sort=False)):
         for source, look in COMPARED.items():
-            for _, one in each[each["source"] == source].groupby("variant"):
+            one = each[each["source"] == source]
+            if len(one):
                 step = max(1, len(one) // 5)
                 apart = {"markevery": (number % step, step)} if "marker" not in look else {}
                 curve(ax, one, x, y, **series(number) | apart | look | style)
@@ -62,13 +65,14 @@ def series_legend(figure: Figure, table: pd.DataFrame) -> None:
     legend(figure, [*named, *models])
 
 
-def style_of(source: str, variant: object) -> dict[str, Any]:
-    """Style of a model or map; a variant other than the default is thinner and dash-dotted."""
+def style_of(source: str, name: str, number: int) -> dict[str, Any]:
+    """Style of a model or map, of which ``name`` is the n-th curve; the first has the plain line."""
     style = SOURCES[source]
-    if not isinstance(variant, str) or variant == "default":
-        return style
-    other = {"linewidth": 1.0, "linestyle": (0, (6, 1, 1, 1, 1, 1))}
-    return style | other | {"label": f"{style['label']}, {variant}"}
+    if name:
+        style = style | {"label": f"{style['label']}, {name}"}
+    if number > 0:
+        style = style | {"linewidth": 1.0, "linestyle": (0, (6, *[1] * (2 * number + 1)))}
+    return style
 
 
 def curve(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:

@@ -34,7 +34,7 @@ def table(data: Any) -> pd.DataFrame:
             cap = half * (1 - state[CONTRACTION])
             frames.append(drawn.assign(**state.drop([NUMBER, "point"]), **{CAP: cap}))
     every = pd.concat(frames, ignore_index=True)
-    every[SERIES] = series(every, [PRESSURE, CONTRACTION, "muscle", "variant"])
+    every[SERIES] = series(every, [PRESSURE, CONTRACTION])
     return every
 
 

@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from workflow.figures import curves
-from workflow.figures.labels import SERIES, constants
+from workflow.figures.labels import SERIES, constants, series
 from workflow.figures.states import COLUMN, CONTRACTION, DIAMETER, FORCE, PRESSURE, describe, states
 from workflow.figures.style import FULL, SOFT, panels, percent
 
@@ -29,21 +29,24 @@ def table(data: Any) -> pd.DataFrame:
     every[INITIAL] = describe(every, data)[DIAMETER]
     every[EQUIVALENT] = every[EQUIVALENT].where(every[FORCE] > 0)
     every[EXCESS] = every[EQUIVALENT] / every[INFLATED] - 1
-    return every[[*STATE, INITIAL, *NAMES, EXCESS]]
+    every[SERIES] = series(every, ["muscle", CONTRACTION])
+    return every[[*STATE, SERIES, INITIAL, *NAMES, EXCESS]]
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Diameters, and the excess of the equivalent one."""
     figure, axes = panels(FULL, 3.2, 1, 2, gap=(0.75, 0), sharex=True)
     left, right = axes[0]
-    melted = table.melt(STATE, list(NAMES), SERIES, "diameter [mm]").replace({SERIES: NAMES})
+    melted = table.melt([*STATE, SERIES], list(NAMES), "quantity", "diameter [mm]")
+    quantity = melted["quantity"].map(NAMES)
+    several = table[SERIES].nunique() > 1
+    melted[SERIES] = quantity + ", " + melted[SERIES] if several else quantity
     curves.by_series(left, melted, PRESSURE, "diameter [mm]")
     for initial in table[INITIAL].unique():
         left.axhline(initial, color="black", linewidth=1.0, linestyle=(0, (5, 2)))
         end = left.get_xlim()[1]
         left.annotate("initial", (end, initial), (-4, -4), textcoords="offset points", **CORNER)
-    excess = table.assign(**{SERIES: NAMES[EQUIVALENT]})
-    curves.by_series(right, excess, PRESSURE, EXCESS)
+    curves.by_series(right, table, PRESSURE, EXCESS)
     right.axhline(PAPER_EXCESS, color=SOFT, linewidth=1.0, linestyle=":")
     right.annotate(
         "the paper's mean, 15.6 %", (0.0, PAPER_EXCESS), (0, 3), textcoords="offset points"

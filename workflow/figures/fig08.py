@@ -14,7 +14,7 @@ from workflow.figures.style import COLUMN_WIDTH, panels, percent
 def table(data: Any) -> pd.DataFrame:
     """Contraction of all states; the force is the load."""
     every = states(data, ["contraction"])
-    every[SERIES] = series(every, [FORCE, "muscle"])
+    every[SERIES] = series(every, [FORCE])
     return every
 
 

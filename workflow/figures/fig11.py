@@ -14,6 +14,7 @@ from workflow.figures import curves, force_contraction
 from workflow.figures.labels import SERIES, constants
 from workflow.figures.states import CONTRACTION, DIAMETER, FORCE, GOOD, PRESSURE, THREADS
 from workflow.figures.style import COLUMN_WIDTH, panels, percent
+from workflow.study_error import StudyError
 
 RATIO = "force / force of the narrowest [1]"
 SHARE = "force of the narrowest / its largest [1]"
@@ -27,6 +28,8 @@ TICKS = (1, 2, 3, 4, 6, 10, 20, 40, 100)
 def table(data: Any) -> pd.DataFrame:
     """Ratios of all muscles but the narrowest; a state counts as the worse of the two."""
     every = force_contraction.table(data, [DIAMETER, THREADS])
+    if len(data.muscles) < 2:
+        raise StudyError(f"scenes.{data.name}.muscles: a ratio needs at least two muscles")
     narrowest = min(data.muscles, key=lambda name: (data.muscles[name].inner_diameter, name))
     every[SHARE] = every[FORCE] / every.groupby([*CURVE, "muscle"])[FORCE].transform("max")
     at = [*CURVE, CONTRACTION]

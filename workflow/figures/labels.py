@@ -35,11 +35,21 @@ def shown(column: str, value: Any) -> str:
     return SHOWN.get(column, str)(value)
 
 
-def series(table: pd.DataFrame, columns: Iterable[str]) -> pd.Series:
-    """A name for every row: its values in those of the columns that vary (or in the first)."""
-    columns = list(columns)
+def series(table: pd.DataFrame, columns: Iterable[str], *, apart: bool = True) -> pd.Series:
+    """A name for every row: its values in those of the columns that vary (or in the first).
+
+    Variants have different names, and so have different muscles if they are to be told ``apart``.
+    """
+    columns = [*columns, "variant"]
     varying = [column for column in columns if table[column].nunique() > 1] or columns[:1]
-    return table[varying].apply(lambda row: ", ".join(map(shown, varying, row)), axis=1)
+    names = _joined(table, varying)
+    if apart and (table.groupby(names)["muscle"].nunique() > 1).any():
+        names = _joined(table, [*varying, "muscle"])
+    return names
+
+
+def _joined(table: pd.DataFrame, columns: list[str]) -> pd.Series:
+    return table[columns].apply(lambda row: ", ".join(map(shown, columns, row)), axis=1)
 
 
 def constants(table: pd.DataFrame, columns: Iterable[str]) -> str:

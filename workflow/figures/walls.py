@@ -15,7 +15,7 @@ def table(data: Any, quantity: str) -> pd.DataFrame:
     """States of all muscles, told apart by rubber and load."""
     every = describe(states(data, [quantity]), data)
     held = CONTRACTION if quantity == "force" else FORCE
-    every[SERIES] = series(every, ["material", PRESSURE, held])
+    every[SERIES] = series(every, ["material", PRESSURE, held], apart=False)
     return every.sort_values([SERIES, "source", "variant", WALL], ignore_index=True)
 
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from solver.status import StateStatus
 from workflow.figures import curves
-from workflow.figures.labels import SERIES
+from workflow.figures.labels import SERIES, series
 from workflow.figures.states import CONTRACTION, FORCE, PRESSURE, states
 
 
@@ -101,3 +101,23 @@ def test_states_that_failed_have_no_numbers_in_the_table(small_scene, fail):
     table = states(spoiled, ["force"])
     assert table[FORCE].isna().tolist() == [False, True, False, False, False]
     assert table["status"].tolist()[1] == "invalid_state"
+
+
+def test_another_muscle_or_variant_is_another_line(small_scene):
+    table = states(small_scene(), ["force"])
+    other = table.assign(variant="paper")
+    ax = Figure().add_subplot()
+    curves.by_source(ax, pd.concat([table, other]), CONTRACTION, FORCE)
+    assert [len(line.get_xdata()) for line in ax.lines] == [5, 5]
+    labels = [line.get_label() for line in ax.lines]
+    assert labels == ["FE solid, dmsp20, default", "FE solid, dmsp20, paper"]
+    assert ax.lines[0].get_linestyle() != ax.lines[1].get_linestyle()
+
+
+def test_muscles_that_a_name_would_mix_are_told_apart(small_scene):
+    table = states(small_scene(), ["force"])
+    both = pd.concat([table, table.assign(muscle="longer")], ignore_index=True)
+    assert set(series(both, [PRESSURE])) == {"0.3 MPa, dmsp20", "0.3 MPa, longer"}
+    assert set(series(both, [PRESSURE], apart=False)) == {"0.3 MPa"}
+    variants = pd.concat([table, table.assign(variant="paper")], ignore_index=True)
+    assert set(series(variants, [PRESSURE])) == {"default", "paper"}

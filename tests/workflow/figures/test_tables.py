@@ -9,6 +9,7 @@ from solver.status import StateStatus
 from workflow.figures.labels import SERIES
 from workflow.figures.states import COLUMN, CONTRACTION, FORCE, PRESSURE, WALL
 from workflow.figures.stress import LARGEST, SMALLEST, along_meridian, principal, wall
+from workflow.study_error import StudyError
 
 ANGLE = np.arctan(np.pi * 21.2 / 144)
 FE = 0.8  # of the force of Eq. (1), see conftest.py
@@ -163,3 +164,10 @@ def test_mean_through_the_wall_is_that_of_the_area():
     assert only(lines, where="mean")[LARGEST].tolist() == pytest.approx([2])
     assert only(lines, where="inner surface")[LARGEST].tolist() == pytest.approx([1, 1])
     assert only(lines, where="outer surface")["Z [mm]"].tolist() == [0, 5]
+
+
+def test_fig11_of_one_muscle_is_refused(small_scene):
+    from workflow.figures import fig11
+
+    with pytest.raises(StudyError, match="at least two muscles"):
+        fig11.table(small_scene())
