@@ -1,6 +1,6 @@
 """What several tests share: the muscle of the paper and its materials, and solves kept by case.
 
-A test that needs FreeFEM on a machine without it ends with an error that says so; it is not skipped.
+Without FreeFEM a test that needs it ends with an error that says so; it is not skipped.
 """
 
 import csv
@@ -36,7 +36,7 @@ def muscle() -> Muscle:
 
 @pytest.fixture(scope="session")
 def bare_tube() -> Muscle:
-    """The tube of the muscle, without braid; short, as it is used where nothing changes along it."""
+    """The tube of the muscle without braid; short, for where nothing changes along it."""
     return Muscle(inner_diameter=20, wall_thickness=2, length=20, braid=None)
 
 

@@ -90,9 +90,9 @@ def test_numbers_have_units(written):
             assert file["states"][name].attrs["long_name"] == long_name
         parameters = {}
         file["parameters"].visititems(
-            lambda name, item: parameters.update({name: item})
-            if isinstance(item, h5py.Dataset)
-            else None
+            lambda name, item: (
+                parameters.update({name: item}) if isinstance(item, h5py.Dataset) else None
+            )
         )
         units = {name: item.attrs["units"] for name, item in parameters.items()}
         assert units["muscle/inner_diameter"] == "mm"
