@@ -19,6 +19,7 @@ rule all:
     default_target: True
     input:
         figures(),
+        map(record_of, PLAN.cases),  # else one that was deleted would not be missed
         expand("results/muscles/{muscle}.step", muscle=PLAN.shown),
         "results/dataset.nc",
         "results/complete.txt",
