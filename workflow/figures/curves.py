@@ -66,7 +66,7 @@ def series_legend(figure: Figure, table: pd.DataFrame) -> None:
 
 
 def style_of(source: str, name: str, number: int) -> dict[str, Any]:
-    """Style of a model or map, of which ``name`` is the n-th curve; the first has the plain line."""
+    """Style of the n-th curve of a model or map, called ``name``; the first has the plain line."""
     style = SOURCES[source]
     if name:
         style = style | {"label": f"{style['label']}, {name}"}
