@@ -1,78 +1,93 @@
-"""A picture of the muscle (the paper's Fig. 3): all threads, the layers laid open, the numbers.
-
-The view is orthographic, from beside the axis and a little from its positive end. Every body is a
-cylinder about the axis, and each further along the axis is nearer to the viewer; so bodies are
-painted in this order, and of a surface what faces the viewer is what is seen.
-"""
+"""A picture of the muscle (the paper's Fig. 3): its threads laid open in steps, and its numbers."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Polygon
+from matplotlib.transforms import offset_copy
 from numpy.typing import NDArray
 
 from geometry.muscle import Muscle
-from geometry.whole import thread_points
+from geometry.painting import COVER, EDGE, LAYER_COLOURS, TURNED, Body, face, paint
+from geometry.whole import TURNING
 
-WIDTH, HEIGHT = 7.0, 3.7  # of the figure [inch]
-WHOLE = (0.15, 2.62, 6.7, 1.0)  # left, bottom, width, height of the axes [inch]
-OPENED = (0.15, 0.1, 4.35, 2.3)
-NUMBERS = (4.75, 0.35, 2.1, 1.9)
-TURNED = math.radians(24)  # of the axis, out of the plane of the paper
-LIGHT = math.radians(40)  # of the light, above the viewer
-FONT = 8.5  # [pt]
-STEPS_PER_TURN = 48  # of a drawn thread
-STRIPS = 48  # of the seen half of a cylinder
-RUBBER, BENEATH, CAP = (0.62, 0.90), (0.80, 0.99), (0.30, 0.62)  # darkest and lightest grey
-LAYERS = (  # colours that also differ in grey
-    {"color": "#12357a", "label": "inner layer, clockwise"},
-    {"color": "#f0750f", "label": "outer layer, counter-clockwise"},
-)
-
-
-@dataclass(frozen=True)
-class _Body:
-    """A piece of cylinder, and the thread layer on it that is to be seen."""
-
-    radius: float
-    start: float
-    stop: float
-    greys: tuple[float, float]
-    layers: tuple[int, ...] = ()
+WIDTH, HEIGHT = 7.0, 3.6  # of the figure [inch]
+WHOLE = (0.1, 2.5, 6.8, 0.95)  # left, bottom, width, height of the axes [inch]
+OPENED = (0.1, 0.4, 2.75, 1.5)
+SECTION = (3.1, 0.65, 1.2, 1.2)
+NUMBERS = (5.1, 6.9, 1.9)  # left, right and top of the table [inch]
+ROW, NAME, LINE_PITCH = 0.16, 1.05, 0.215  # least distance of labels and of names, lines [inch]
+FONT = 8.0  # [pt]
+PIECE = 1.3  # length of each step of the enlarged piece [outer radius]
+SLICE = 0.85  # half width of the section [wall thickness]
+RUBBER, BENEATH, CAP = (0.50, 0.80), (0.80, 1.0), (0.25, 0.55)  # darkest and lightest grey
+BORE, CUT, SOFT = 0.2, 0.88, "0.4"  # greys
+LINE: dict[str, Any] = {"color": "black", "linewidth": EDGE}
 
 
 def draw(muscle: Muscle) -> Figure:
-    """Draw the muscle whole, with both layers seen through the rubber, and laid open at one end."""
+    """Draw the muscle whole, a piece of it and its wall enlarged, and its numbers.
+
+    Layers are laid open in steps: the tube, without its outside the outer layer, and without what
+    is outside of it the inner layer.
+    """
     figure = Figure(figsize=(WIDTH, HEIGHT))
-    half, outer = muscle.length / 2, muscle.outer_radius
-    layers = tuple(range(len(muscle.layer_radii)))
-    cap_start, cap_stop = half, half + muscle.cap_length
-    tube = _Body(outer, -half, half, BENEATH if layers else RUBBER, layers)
-    caps = [_Body(outer, a, b, CAP) for a, b in ((-cap_stop, -cap_start), (cap_start, cap_stop))]
+    outer, half = muscle.outer_radius, muscle.length / 2
+    left, right = (
+        Body(name="cap", radius=outer, start=start, stop=start + muscle.cap_length, greys=CAP)
+        for start in (-half - muscle.cap_length, half)
+    )
+    steps = laid_open(muscle, muscle.length)
+    axes = _view(figure, WHOLE, muscle, left.start, right.stop)
+    paint(axes, muscle, [left, *steps])
+    face(axes, muscle.inner_radius, half, BORE)
+    paint(axes, muscle, [right])
+    _dimension(figure, axes, muscle)
 
-    whole = _axes(figure, WHOLE)
-    _paint(whole, muscle, [caps[0], tube, caps[1]])
-    _dimension(whole, muscle)
+    steps = laid_open(muscle, min(muscle.length, PIECE * outer * len(steps)))
+    left = replace(left, start=max(left.start, -half - PIECE / 2 * outer))
+    axes = _view(figure, OPENED, muscle, left.start, steps[-1].stop)
+    paint(axes, muscle, [left, *steps])
+    face(axes, muscle.inner_radius, steps[-1].stop, BORE)
+    _name_bodies(axes, muscle, [left, *steps])
 
-    opened = _axes(figure, OPENED)
-    bodies = _laid_open(muscle)
-    _paint(opened, muscle, [caps[0], *bodies])
-    _face(opened, muscle.inner_radius, bodies[-1].stop, "0.25")
-    _name_bodies(opened, muscle, bodies)
-
+    _section(figure, muscle)
     _write_numbers(figure, muscle)
     return figure
 
 
+def laid_open(muscle: Muscle, length: float) -> list[Body]:
+    """The tube from its left end, with more of the wall taken off in every step of equal length."""
+    steps = len(muscle.layer_radii) + 1
+    edges = (np.linspace(0, length, steps + 1) - muscle.length / 2).tolist()
+    tube = Body(
+        name="tube", radius=muscle.outer_radius, start=edges[0], stop=edges[1], greys=RUBBER
+    )
+    layers = [
+        Body(
+            name=f"{('inner', 'outer')[layer]} layer, {tuple(TURNING)[layer]}",
+            radius=muscle.layer_radii[layer],
+            start=start,
+            stop=stop,
+            greys=BENEATH,
+            layer=layer,
+        )
+        for layer, (start, stop) in zip(range(steps - 1)[::-1], pairwise(edges[1:]), strict=True)
+    ]
+    return [tube, *layers]
+
+
 def numbers(muscle: Muscle) -> list[tuple[str, str]]:
-    """Names of the muscle's numbers, and the numbers with their units, as they are drawn."""
+    """Names of the muscle's numbers, and the numbers with their units, as they are written."""
     rows = [
         ("inner diameter", f"{muscle.inner_diameter:g} mm"),
         ("wall thickness", f"{muscle.wall_thickness:g} mm"),
-        ("length between caps", f"{muscle.length:g} mm"),
+        ("length", f"{muscle.length:g} mm"),
     ]
     braid = muscle.braid
     if braid is None:
@@ -80,160 +95,132 @@ def numbers(muscle: Muscle) -> list[tuple[str, str]]:
     inner, outer = braid.layer_diameters
     return [
         *rows,
-        ("layer diameters", f"{inner:g} and {outer:g} mm"),
-        ("threads", f"{braid.threads} in each layer"),
+        ("layer diameters", f"{inner:g}, {outer:g} mm"),
+        ("threads per layer", f"{braid.threads}"),
         ("lead", f"{braid.lead:.5g} mm"),
         ("axial spacing", f"{braid.axial_spacing:.4g} mm"),
-        ("braid angle", f"{math.degrees(braid.angle):.1f}°"),
+        ("braid angle", f"{math.degrees(braid.angle):.2f}°"),
     ]
 
 
-def _laid_open(muscle: Muscle) -> list[_Body]:
-    """Near one cap, the wall taken off in steps: on layer 2, on layer 1, at the tube's end."""
-    outer = muscle.outer_radius
-    surfaces: list[tuple[float, float, tuple[int, ...]]] = [(1.7, outer, ())]
-    for layer, radius in reversed(list(enumerate(muscle.layer_radii))):
-        surfaces.append((1.7, radius, (layer,)))
-    share = min(1.0, muscle.length / (outer * sum(length for length, _, _ in surfaces)))
-    bodies, start = [], -muscle.length / 2
-    for length, radius, layers in surfaces:
-        stop = start + share * length * outer
-        bodies.append(_Body(radius, start, stop, BENEATH if layers else RUBBER, layers))
-        start = stop
-    return bodies
+def spread(values: list[float], gap: float) -> list[float]:
+    """Rising values moved apart to at least ``gap``, about where they were."""
+    apart = np.maximum.accumulate(np.array(values) - gap * np.arange(len(values)))
+    apart += gap * np.arange(len(values))
+    return list(apart - np.mean(apart - values))
 
 
 def _axes(figure: Figure, place: tuple[float, float, float, float]) -> Axes:
-    """Empty axes in mm, at a place in inch."""
+    """Empty axes with equal scales, at a place in inch."""
     left, bottom, width, height = place
     axes = figure.add_axes((left / WIDTH, bottom / HEIGHT, width / WIDTH, height / HEIGHT))
     axes.set_axis_off()
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_aspect("equal")
     return axes
 
 
-def _project(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where points (..., 3) of the muscle lie on the paper (..., 2); the axis runs to the right."""
-    x, y, z = np.moveaxis(points, -1, 0)
-    return np.stack([math.cos(TURNED) * z - math.sin(TURNED) * x, -y], axis=-1)
+def _view(
+    figure: Figure,
+    place: tuple[float, float, float, float],
+    muscle: Muscle,
+    start: float,
+    stop: float,
+) -> Axes:
+    """Axes in mm on the paper that hold the muscle from one Z to another."""
+    axes, outer = _axes(figure, place), muscle.outer_radius
+    side = math.sin(TURNED) * outer  # half the width of a circle about the axis
+    axes.set_xlim(math.cos(TURNED) * start - side, math.cos(TURNED) * stop + side)
+    axes.set_ylim(-1.02 * outer, 1.02 * outer)
+    return axes
 
 
-def _faces_viewer(points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether a cylinder's surface is seen at its points (..., 3); the viewer is where x > 0."""
-    return np.asarray(points[..., 0] >= 0)
-
-
-def _circle(radius: float, z: float, turn: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points of a circle about the axis, at angles from the viewer's side [rad]."""
-    points = radius * np.cos(turn), radius * np.sin(turn), np.full_like(turn, z)
-    return np.stack(points, axis=-1)
-
-
-def _paint(axes: Axes, muscle: Muscle, bodies: list[_Body]) -> None:
-    """Paint bodies from the farthest to the nearest, and set the limits of the axes."""
-    ends = [(bodies[0].radius, bodies[0].start), (bodies[-1].radius, bodies[-1].stop)]
-    turn = np.linspace(0, 2 * math.pi, 4 * STRIPS)
-    around = np.concatenate([_project(_circle(radius, z, turn)) for radius, z in ends])
-    axes.update_datalim(around)
-    axes.margins(0.01)
-    axes.autoscale_view()
-    for body in bodies:
-        if body.stop > body.start:
-            _surface(axes, body)
-            _face(axes, body.radius, body.stop, str(body.greys[1]))
-            for layer in body.layers:
-                _threads(axes, muscle, layer, body)
-
-
-def _surface(axes: Axes, body: _Body) -> None:
-    """The seen half of a cylinder, shaded."""
-    turn = np.linspace(-math.pi / 2, math.pi / 2, STRIPS + 1)
-    far, near = (_project(_circle(body.radius, z, turn)) for z in (body.start, body.stop))
-    strips = np.stack([far[:-1], far[1:], near[1:], near[:-1]], axis=1)
-    middle = (turn[:-1] + turn[1:]) / 2
-    dark, light = body.greys
-    grey = dark + (light - dark) * np.clip(np.cos(middle + LIGHT), 0, 1)
-    colours = [str(round(shade, 3)) for shade in grey]
-    axes.add_collection(
-        PolyCollection(
-            list(strips), facecolors=colours, edgecolors=colours, linewidths=0.4, zorder=1
-        ),
-        autolim=False,
-    )
-    outline = [far, np.stack([far[0], near[0]]), np.stack([far[-1], near[-1]])]
-    axes.add_collection(
-        LineCollection(outline, colors="black", linewidths=0.6, zorder=1), autolim=False
-    )
-
-
-def _face(axes: Axes, radius: float, z: float, grey: str) -> None:
-    """The end of a cylinder, which the viewer sees whole."""
-    edge = _project(_circle(radius, z, np.linspace(0, 2 * math.pi, 4 * STRIPS)))
-    axes.add_collection(
-        PolyCollection([edge], facecolors=grey, edgecolors="black", linewidths=0.6, zorder=1),
-        autolim=False,
-    )
-
-
-def _threads(axes: Axes, muscle: Muscle, layer: int, body: _Body) -> None:
-    """What is seen of the threads of one layer on one body."""
-    assert muscle.braid is not None
-    steps = math.ceil(STEPS_PER_TURN * (body.stop - body.start) / muscle.braid.lead)
-    z = np.linspace(body.start, body.stop, max(steps, 8) + 1)
-    runs = []
-    for thread in thread_points(muscle, layer, z):
-        seen = _faces_viewer(thread)
-        for run in np.split(np.arange(len(z)), np.flatnonzero(np.diff(seen)) + 1):
-            if seen[run[0]] and len(run) > 1:
-                runs.append(_project(thread[run]))
-    gap = muscle.braid.axial_spacing * math.sin(muscle.braid.angle)  # between threads [mm]
-    size = axes.get_position().width * WIDTH * 72 / np.ptp(axes.get_xlim())  # [pt/mm]
-    axes.add_collection(
-        LineCollection(
-            runs,
-            colors=LAYERS[layer]["color"],
-            linewidths=min(1.4, 0.36 * gap * size),
-            capstyle="butt",
-            zorder=1,
-        ),
-        autolim=False,
-    )
-
-
-def _dimension(axes: Axes, muscle: Muscle) -> None:
+def _dimension(figure: Figure, axes: Axes, muscle: Muscle) -> None:
     """The length between the caps, under the whole muscle."""
-    half, below = muscle.length / 2 * math.cos(TURNED), -1.45 * muscle.outer_radius
-    arrow = {"arrowstyle": "<|-|>", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0, "color": "black"}
-    axes.annotate("", (-half, below), (half, below), arrowprops=arrow, annotation_clip=False)
+    below = offset_copy(axes.transData, fig=figure, y=-ROW, units="inches")
+    half, y = muscle.length / 2 * math.cos(TURNED), -muscle.outer_radius
+    arrow = {"arrowstyle": "<|-|>", "shrinkA": 0, "shrinkB": 0, **LINE}
+    ends: dict[str, Any] = {"xycoords": below, "textcoords": below, "annotation_clip": False}
+    axes.annotate("", (-half, y), (half, y), arrowprops=arrow, **ends)
+    text: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": FONT}
     box = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
-    axes.text(0, below, f"{muscle.length:g} mm", ha="center", va="center", fontsize=FONT, bbox=box)
+    axes.text(0, y, f"{muscle.length:g} mm", bbox=box, transform=below, **text)
 
 
-def _name_bodies(axes: Axes, muscle: Muscle, bodies: list[_Body]) -> None:
-    """Names of what is seen, above and below each step, in turn."""
-    for number, body in enumerate(bodies):
-        name = LAYERS[body.layers[0]]["label"] if body.layers else "rubber wall"
-        colour = LAYERS[body.layers[0]]["color"] if body.layers else "black"
-        up = 1 if number % 2 == 0 else -1
-        along = math.cos(TURNED) * (body.start + body.stop) / 2
-        axes.annotate(
-            name,
-            (along, up * 0.8 * body.radius),
-            (along, up * 1.45 * muscle.outer_radius),
-            ha="center",
-            va="center",
-            fontsize=FONT,
-            color=colour,
-            arrowprops={"arrowstyle": "-", "linewidth": 0.7, "color": "black", "shrinkA": 1},
-            annotation_clip=False,
-        )
+def _name_bodies(axes: Axes, muscle: Muscle, bodies: list[Body]) -> None:
+    """Names of what is seen, above and below in turn."""
+    seen = [body for body in bodies if body.stop > body.start]
+    scale = min(OPENED[2] / np.ptp(axes.get_xlim()), OPENED[3] / np.ptp(axes.get_ylim()))
+    for up, named in ((1, seen[::2]), (-1, seen[1::2])):
+        middles = [math.cos(TURNED) * (body.start + body.stop) / 2 for body in named]
+        for body, middle, along in zip(named, middles, spread(middles, NAME / scale), strict=True):
+            axes.annotate(
+                body.name,
+                (middle, up * 0.8 * body.radius),
+                (along, up * (muscle.outer_radius + ROW / scale)),
+                ha="center",
+                va="center",
+                fontsize=FONT,
+                color="black" if body.layer is None else LAYER_COLOURS[body.layer],
+                arrowprops={"arrowstyle": "-", "shrinkA": 1, **LINE},
+                annotation_clip=False,
+            )
+
+
+def _section(figure: Figure, muscle: Muscle) -> None:
+    """A slice of the wall across the axis, at mid-length, and the radii in it."""
+    inner, outer = muscle.inner_radius, muscle.outer_radius
+    half = SLICE * muscle.wall_thickness / outer  # [rad]
+    scale = SECTION[2] / (2 * outer * half)  # [inch/mm]
+    axes = _axes(figure, SECTION)
+    axes.set_xlim(-outer * half, outer * half)
+    axes.set_ylim(outer - SECTION[3] / scale, outer)
+
+    turn = np.linspace(-half, half, 50)
+    wall = np.concatenate([_across(inner, turn), _across(outer, -turn)])
+    axes.add_patch(
+        Polygon(wall, facecolor=str(CUT), edgecolor="black", linewidth=EDGE, clip_on=False)
+    )
+    for layer in range(len(muscle.layer_radii)):
+        _cut_threads(axes, muscle, layer, half)
+
+    radii = [inner, *muscle.layer_radii, outer]
+    colours = ["black", *LAYER_COLOURS[: len(muscle.layer_radii)], "black"]
+    ends = [(radius * math.sin(half), radius * math.cos(half)) for radius in radii]
+    heights = spread([float(y) for _, y in ends], ROW / scale)
+    beside = outer * half + 0.15 / scale
+    for radius, colour, end, height in zip(radii, colours, ends, heights, strict=True):
+        axes.plot([end[0], beside], [end[1], height], clip_on=False, **LINE)
+        text = f" {radius:g} mm"
+        axes.text(beside, height, text, va="center", fontsize=FONT, color=colour)
+    axes.text(-outer * half, outer + 0.12 / scale, "radii in the wall", fontsize=FONT)
+    if muscle.braid:
+        note = "threads are curves: their\nwidth is drawn to be seen"
+        below = inner * math.cos(half) - 0.2 / scale
+        axes.text(-outer * half, below, note, va="top", fontsize=FONT - 1, color=SOFT)
+
+
+def _cut_threads(axes: Axes, muscle: Muscle, layer: int, half: float) -> None:
+    """The threads of a layer across the axis, within an angle on both sides; no wider than fits."""
+    assert muscle.braid is not None
+    radius, apart = muscle.layer_radii[layer], 2 * math.pi / muscle.braid.threads
+    radii = [muscle.inner_radius, *muscle.layer_radii, muscle.outer_radius]
+    size = min(COVER * radius * apart, *np.diff(radii)) / 2
+    turn = np.linspace(-half, half, 50)
+    axes.plot(*_across(radius, turn).T, color=LAYER_COLOURS[layer], linewidth=EDGE)
+    number = int((half - size / radius) / apart)
+    for centre in _across(radius, np.arange(-number, number + 1) * apart):
+        axes.add_patch(Circle(tuple(centre), size, color=LAYER_COLOURS[layer], linewidth=0))
+
+
+def _across(radius: float, turn: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
+    """Points of a section across the axis, by the angle from upwards."""
+    return np.stack([radius * np.sin(turn), radius * np.cos(turn)], axis=-1)
 
 
 def _write_numbers(figure: Figure, muscle: Muscle) -> None:
     """The muscle's numbers as a small table."""
-    left, bottom, width, height = NUMBERS
-    rows = numbers(muscle)
-    for number, (name, value) in enumerate(rows):
-        y = (bottom + height * (1 - (number + 0.5) / len(rows))) / HEIGHT
+    left, right, top = NUMBERS
+    for number, (name, value) in enumerate(numbers(muscle)):
+        y = (top - number * LINE_PITCH) / HEIGHT
         figure.text(left / WIDTH, y, name, ha="left", va="center", fontsize=FONT)
-        figure.text((left + width) / WIDTH, y, value, ha="right", va="center", fontsize=FONT)
+        figure.text(right / WIDTH, y, value, ha="right", va="center", fontsize=FONT)

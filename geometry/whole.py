@@ -32,22 +32,28 @@ def thread_length(muscle: Muscle, layer: int) -> float:
     return muscle.length / math.cos(_braid(muscle).layer_angles[layer])
 
 
-def thread_points(muscle: Muscle, layer: int, z: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points of all threads of a layer (0 inner, 1 outer) at given heights Z [mm].
+def thread_turns(muscle: Muscle, layer: int, z: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Angles about the axis of all threads of a layer (0 inner, 1 outer) at heights Z [rad].
 
     Returns
     -------
-    array of shape (threads, heights, 3)
+    array of shape (threads, heights); at Z = 0 the first thread of each layer is at 0
 
     Raises
     ------
     UnbuildableMuscle
         If the muscle has no braid.
     """
-    braid, radius = _braid(muscle), muscle.layer_radii[layer]
+    braid = _braid(muscle)
     start = 2 * math.pi * np.arange(braid.threads) / braid.threads
-    turn = start[:, None] + tuple(TURNING.values())[layer] * 2 * math.pi * z / braid.lead
-    points = radius * np.cos(turn), radius * np.sin(turn), np.broadcast_to(z, turn.shape)
+    turning = tuple(TURNING.values())[layer]
+    return np.asarray(start[:, None] + turning * 2 * math.pi * z / braid.lead)
+
+
+def thread_points(muscle: Muscle, layer: int, z: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points of all threads of a layer at heights Z, shape (threads, heights, 3) [mm]."""
+    turns, radius = thread_turns(muscle, layer, z), muscle.layer_radii[layer]
+    points = radius * np.cos(turns), radius * np.sin(turns), np.broadcast_to(z, turns.shape)
     return np.stack(points, axis=-1)
 
 
