@@ -29,7 +29,7 @@ class UnbuildableMesh(Refusal):
 
 @dataclass(frozen=True, kw_only=True)
 class Grading:
-    """Step sizes along the axis.
+    """Step sizes along the axis. With a growth of 1 the body's step goes on to the cap.
 
     ``refinement`` m cuts every interval of m = 1 into m, with the m-th root of the growth in the
     graded zone. So the nodes of m are among those of 2m, and m = 1, 2, 3, 4 are one family
