@@ -31,7 +31,7 @@ def solve(
     direct = _direct(case.model)
     if direct is not None:
         return _with_diameter(direct(case)), None
-    if mesh is None or not mesh.exists():
+    if mesh is None or not mesh.exists() or mesh.stat().st_size == 0:
         return failure(case, CaseStatus.MESH_FAILED, f"no mesh at {mesh}"), None
     states = unreached(case.path.states)
     fields: dict[int, dict[str, NDArray[np.float64]]] = {}
