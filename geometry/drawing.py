@@ -13,7 +13,7 @@ from matplotlib.transforms import offset_copy
 from numpy.typing import NDArray
 
 from geometry.muscle import Muscle
-from geometry.painting import COVER, EDGE, LAYER_COLOURS, TURNED, Body, face, paint
+from geometry.painting import COVER, EDGE, LAYER_COLOURS, TURNED, Body, face, paint, project
 from geometry.whole import TURNING
 
 WIDTH, HEIGHT = 7.0, 3.6  # of the figure [inch]
@@ -25,6 +25,7 @@ ROW, NAME, LINE_PITCH = 0.16, 1.05, 0.215  # least distance of labels and of nam
 FONT = 8.0  # [pt]
 PIECE = 1.3  # length of each step of the enlarged piece [outer radius]
 SLICE = 0.85  # half width of the section [wall thickness]
+POINTED = math.radians(60)  # from the viewer's side to where a name points on its body
 RUBBER, BENEATH, CAP = (0.50, 0.80), (0.80, 1.0), (0.25, 0.55)  # darkest and lightest grey
 BORE, CUT, SOFT = 0.2, 0.88, "0.4"  # greys
 LINE: dict[str, Any] = {"color": "black", "linewidth": EDGE}
@@ -105,6 +106,8 @@ def numbers(muscle: Muscle) -> list[tuple[str, str]]:
 
 def spread(values: list[float], gap: float) -> list[float]:
     """Rising values moved apart to at least ``gap``, about where they were."""
+    if not values:
+        return []
     apart = np.maximum.accumulate(np.array(values) - gap * np.arange(len(values)))
     apart += gap * np.arange(len(values))
     return list(apart - np.mean(apart - values))
@@ -151,11 +154,13 @@ def _name_bodies(axes: Axes, muscle: Muscle, bodies: list[Body]) -> None:
     seen = [body for body in bodies if body.stop > body.start]
     scale = min(OPENED[2] / np.ptp(axes.get_xlim()), OPENED[3] / np.ptp(axes.get_ylim()))
     for up, named in ((1, seen[::2]), (-1, seen[1::2])):
-        middles = [math.cos(TURNED) * (body.start + body.stop) / 2 for body in named]
-        for body, middle, along in zip(named, middles, spread(middles, NAME / scale), strict=True):
+        turn = np.array(-up * POINTED)
+        ends = [project(body.radius, turn, (body.start + body.stop) / 2) for body in named]
+        places = spread([float(end[0]) for end in ends], NAME / scale)
+        for body, end, along in zip(named, ends, places, strict=True):
             axes.annotate(
                 body.name,
-                (middle, up * 0.8 * body.radius),
+                tuple(end),
                 (along, up * (muscle.outer_radius + ROW / scale)),
                 ha="center",
                 va="center",
