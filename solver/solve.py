@@ -30,7 +30,7 @@ def solve(
     """Solve a case; the usage is None for models without FreeFEM."""
     direct = _direct(case.model)
     if direct is not None:
-        return _with_diameter(direct(case)), None
+        return _with_diameter(case, direct(case)), None
     if mesh is None or not mesh.exists() or mesh.stat().st_size == 0:
         return failure(case, CaseStatus.MESH_FAILED, f"no mesh at {mesh}"), None
     states = unreached(case.path.states)
@@ -41,7 +41,7 @@ def solve(
         usages += [end.usage] if end.usage else []
         if end.status is not None or np.isfinite(states["force"]).all():
             break
-    return _with_diameter(_judge(case, states, fields, end, log)), _total(usages)
+    return _with_diameter(case, _judge(case, states, fields, end, log)), _total(usages)
 
 
 @dataclass(frozen=True)
@@ -240,10 +240,11 @@ def _rows(path: Path) -> list[dict[str, float]]:
     return [{n: float(value) for n, value in row.items()} for row in csv.DictReader(lines)]
 
 
-def _with_diameter(solution: Solution) -> Solution:
+def _with_diameter(case: Case, solution: Solution) -> Solution:
     """Adds the equivalent diameter, sign(F) sqrt(4 |F| / (pi p)) [mm]; NaN without pressure."""
     states = solution.states
-    pressure = np.where(states["pressure"] > 0, states["pressure"], np.nan)
+    rounding = 1e-9 * case.rubber.shear_modulus  # a pressure of 0 comes out as 1e-17
+    pressure = np.where(states["pressure"] > rounding, states["pressure"], np.nan)
     size = np.sqrt(4 * np.abs(states["force"]) / (np.pi * pressure))
     states["equivalent_diameter"] = np.sign(states["force"]) * size
     return solution
