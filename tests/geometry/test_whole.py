@@ -110,7 +110,7 @@ def test_threads_stay_on_their_helix(muscle, model):
 
 
 def test_the_inner_layer_is_clockwise():
-    """As it goes away from the viewer, along Z; so it turns from x to y, as right-hand screws do."""
+    """Going away from the viewer, along Z: it turns from x to y, as right-hand screws do."""
     muscle = MUSCLES["paper"]
     quarter = np.array([0.0, muscle.braid.lead / 4])
     inner, outer = (whole.thread_points(muscle, layer, quarter)[0] for layer in (0, 1))
