@@ -13,6 +13,7 @@ include: "workflow/rules/mesh.smk"
 include: "workflow/rules/solve.smk"
 include: "workflow/rules/gather.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/studies.smk"
 
 
 rule all:
@@ -23,9 +24,5 @@ rule all:
         expand("results/muscles/{muscle}.step", muscle=PLAN.shown),
         "results/dataset.nc",
         "results/complete.txt",
-
-
-rule dataset:
-    input:
-        "results/dataset.nc",
-        "results/tables/failures.csv",
+    message:
+        "All is there: results/figures, results/dataset.nc, results/muscles"

@@ -44,6 +44,10 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--output", type=Path, required=True, help=".png; .svg and .csv beside it")
     add(_explain, "Say which cases the scenes ask for, and which they share.")
     add(_cases, "List the cases: key, status of the record, label.")
+    entry = add(_study, "Write the table and the figures of a study of the models.")
+    entry.add_argument("--name", required=True)
+    entry.add_argument("--table", type=Path, required=True)
+    entry.add_argument("--figures", type=Path, default=Path("results/figures"), help="folder")
     entry = add(_failures, "List what failed; status 1 if anything did.", study=False)
     entry.add_argument("--table", type=Path, default=FAILURES)
     entry = add(_retry, "Delete the records of failed cases, so that they are solved again.")
@@ -105,6 +109,13 @@ def _status(plan, key: str) -> str:
         return "damaged"
 
 
+def _study(given: argparse.Namespace) -> int:
+    from workflow import studies
+
+    studies.evaluate(given.name, str(given.study), given.table, given.figures)
+    return 0
+
+
 def _failures(given: argparse.Namespace) -> int:
     from workflow import failures
 
@@ -124,6 +135,8 @@ def _retry(given: argparse.Namespace) -> int:
         status = _status(plan, key)
         if status not in ("converged", "limit_point", "not solved"):
             records.path_of(key).unlink()
+            if status == "mesh_failed":
+                Path("results/meshes", case.mesh).unlink(missing_ok=True)
             print(f"will be solved again (was {status}): {case.label}")
     return 0
 

@@ -18,7 +18,7 @@ from workflow.schema import HELD_KEY, SWEPT_KEY, Scene
 
 FIELDS = {"stress", "deformed_shape"}
 ZERO_FORCE = {"threshold_pressure", "free_contraction"}
-SUFFIX = {"membrane": "mesh", "solid": "msh"}  # of the mesh file, by model
+SUFFIX = {"membrane": "mesh", "solid": "msh", "cell": "msh"}  # of the mesh file, by model
 
 
 @dataclass(frozen=True, order=True)
@@ -42,6 +42,12 @@ class Place:
         return f"{self.muscle} {self.model}{variant} {self.group} {held}"
 
 
+def mesh_file(case: Case) -> str | None:
+    """File name of the mesh of a case, None for a model without."""
+    spec = case.mesh_spec()
+    return f"{digest(spec)}.{SUFFIX[case.model]}" if spec else None
+
+
 @dataclass(frozen=True)
 class PlannedCase:
     """A case, the places that it fills and the scenes that ask for it; both sorted."""
@@ -59,8 +65,7 @@ class PlannedCase:
     @property
     def mesh(self) -> str | None:
         """File name of the mesh, None for a model without."""
-        spec = self.case.mesh_spec()
-        return f"{digest(spec)}.{SUFFIX[self.case.model]}" if spec else None
+        return mesh_file(self.case)
 
 
 @dataclass(frozen=True)

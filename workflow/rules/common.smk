@@ -5,12 +5,14 @@
 # Only workflow/config.py reads a study file, so it is no configfile: and no input of a rule. What a
 # job takes from it is one parameter of its rule, so a job runs again when that changes and not
 # when the file is reordered, commented or touched. Sources are inputs, compared by content.
+import json
 import re
 import shlex
 import sys
 from pathlib import Path
 
-from workflow import run_lock
+from solver.case import MODELS
+from workflow import run_lock, studies
 from workflow.config import load
 from workflow.figure import drawn
 from workflow.plan import plan
@@ -32,7 +34,7 @@ class Label:
     """What a user calls a case, in messages: ``{LABEL:key}``. A parameter would be a reason to rerun."""
 
     def __format__(self, key):
-        return PLAN.cases[key].label
+        return case_of(key).label
 
 
 LABEL = Label()
@@ -61,27 +63,48 @@ def record_of(case):
 
 def mesh_sources(wildcards):
     """All of geometry/ but what makes other kinds of files."""
-    other = "section" if wildcards.mesh.endswith(".mesh") else "meridian"
-    return sources("geometry/*.py", without=["geometry/whole.py", f"geometry/{other}.py"])
+    kind = json.loads(spec_of_mesh(wildcards))["kind"]
+    kinds = ("meridian", "section", "cell", "whole", "drawing", "painting")
+    return sources("geometry/*.py", without=[f"geometry/{k}.py" for k in kinds if k != kind])
+
+
+STUDIED = {}  # cases of the studies that are asked for, by key
+
+
+def cases_of_study(name):
+    """Cases of a study by key; making them takes a second, so not before it is asked for."""
+    found = {asked.case.key: asked for asked in studies.cases(name, STUDY)}
+    STUDIED.update(found)
+    return found
+
+
+def case_of(key):
+    """A case of the scenes or of a study."""
+    if key not in PLAN.cases and key not in STUDIED:
+        for name in studies.FIGURES:
+            cases_of_study(name)
+    return PLAN.cases.get(key) or STUDIED[key]
 
 
 def mesh_of(wildcards):
-    mesh = PLAN.cases[wildcards.case].mesh
+    mesh = case_of(wildcards.case).mesh
     return f"results/meshes/{mesh}" if mesh else []
 
 
+def spec_of_mesh(wildcards):
+    if wildcards.mesh in PLAN.meshes:
+        return PLAN.meshes[wildcards.mesh]
+    return next(a for a in STUDIED.values() if a.mesh == wildcards.mesh).case.mesh_spec()
+
+
 # Of all sources of the solver, those that only one model reads.
-MODEL_SOURCES = {
-    "geometric": sources("solver/geometric.py"),
-    "cylinder": sources("solver/cylinder.py"),
-    "membrane": sources("solver/edp/membrane*"),
-    "solid": sources("solver/edp/solid*", "solver/edp/ends_*"),
-}
+MODEL_SOURCES = {model: sources(f"solver/{model}.py", f"solver/edp/{model}*") for model in MODELS}
+MODEL_SOURCES["solid"] += sources("solver/edp/ends_*")
 
 
 def solver_sources(wildcards):
     """Sources that decide the result of a case; what geometry makes of it is in its mesh."""
-    case = PLAN.cases[wildcards.case]
+    case = case_of(wildcards.case)
     edp = ["solver/edp/*.edp", "solver/edp/*.idp"] if case.mesh else []
     others = [
         f for model, files in MODEL_SOURCES.items() if model != case.case.model for f in files

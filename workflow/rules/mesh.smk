@@ -4,6 +4,7 @@
 #   in   what shapes the mesh, from the plan; geometry/
 #   out  results/meshes/<digest>.mesh    curve mesh of the membrane
 #        results/meshes/<digest>.msh     wall section of the solid
+#        (an empty file where meshing failed: the solve makes it the status mesh_failed)
 #        results/muscles/<muscle>.step   tube, caps and threads, of muscles that a scene shows
 
 
@@ -14,12 +15,16 @@ rule mesh:
         "results/meshes/{mesh}",
     log:
         "results/logs/meshes/{mesh}.log",
+    resources:
+        wall_time=PLAN.study.wall_time,
+        memory=PLAN.study.memory,
     params:
-        spec=lambda wildcards: PLAN.meshes[wildcards.mesh],
+        spec=spec_of_mesh,
     message:
         "Meshing {wildcards.mesh}"
     shell:
-        "python -m geometry - {output:q} <<< {params.spec:q} > {log:q} 2>&1"
+        "(ulimit -v $(({resources.memory} * 1024)) && timeout --foreground {resources.wall_time}"
+        " python -m geometry - {output:q} <<< {params.spec:q}) > {log:q} 2>&1 || : > {output:q}"
 
 
 rule muscle:

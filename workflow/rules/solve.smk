@@ -21,7 +21,7 @@ rule solve:
         wall_time=PLAN.study.wall_time,
         memory=PLAN.study.memory,
     params:
-        case=lambda wildcards: PLAN.cases[wildcards.case].case.canonical(),
+        case=lambda wildcards: case_of(wildcards.case).case.canonical(),
         mesh=lambda wildcards, input: ["--mesh", input.mesh] if input.mesh else [],
     message:
         "Solving {LABEL:{wildcards.case}}"

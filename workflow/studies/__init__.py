@@ -1,0 +1,83 @@
+"""Studies of the models themselves: cases beside those of the scenes, and what becomes of them.
+
+A study is a module here with
+
+- ``cases(study) -> list[StudyCase]``  what to solve, from the muscles of the study file
+- ``table(solved) -> DataFrame``       all that its figures draw, and more
+- ``draw(table) -> dict[str, Figure]`` figures by name, those of FIGURES; drawing computes nothing
+
+and runs as ``snakemake --cores 2 <name>``.
+"""
+
+import importlib
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from pathlib import Path
+from types import ModuleType
+
+from solver import record
+from solver.case import Case
+from solver.record import Solution
+from workflow import records
+from workflow.aside import aside
+from workflow.config import load
+from workflow.plan import mesh_file
+
+FIGURES = {"robustness": ("robustness", "robustness_worst")}
+
+
+@dataclass(frozen=True)
+class StudyCase:
+    """A case of a study: its label for people and its tags, which become columns of the table."""
+
+    case: Case
+    label: str
+    tags: dict[str, str | float] = field(default_factory=dict)
+
+    @cached_property
+    def mesh(self) -> str | None:
+        """File name of the mesh, None for a model without."""
+        return mesh_file(self.case)
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A case of a study with its solution."""
+
+    asked: StudyCase
+    solution: Solution
+
+
+def module(name: str) -> ModuleType:
+    """The module of a study."""
+    return importlib.import_module(f"workflow.studies.{name}")
+
+
+@cache
+def cases(name: str, study_file: str) -> tuple[StudyCase, ...]:
+    """The cases of a study; made once a process, because every job of Snakemake asks."""
+    asked: Iterable[StudyCase] = module(name).cases(load(Path(study_file)))
+    return tuple(asked)
+
+
+def evaluate(name: str, study_file: str, table: Path, figures: Path) -> None:
+    """Read the records of a study; write its table and figures, each whole or not at all.
+
+    Raises
+    ------
+    NoRecord
+        If a record is missing, damaged, or that of another case.
+    """
+    from workflow.figures import style
+
+    solved = [
+        Solved(asked, record.read(records.path_of(asked.case.key))[1])
+        for asked in cases(name, study_file)
+    ]
+    rows = module(name).table(solved)
+    with aside(table) as beside:
+        rows.to_csv(beside, index=False)
+    for figure, drawing in module(name).draw(rows).items():
+        for suffix in (".svg", ".png"):
+            style.save(drawing, (figures / figure).with_suffix(suffix))
