@@ -1,0 +1,34 @@
+# Studies of the models themselves, each a target of its name: snakemake --cores 2 robustness
+#
+#   in   the records of the study's cases; workflow/studies/<name>.py
+#   out  results/tables/<name>.csv    all that its figures draw
+#        results/figures/<...>.png, .svg
+
+for study_name, study_figures in studies.FIGURES.items():
+
+    rule:
+        name:
+            study_name
+        input:
+            records=lambda wildcards, name=study_name: map(record_of, cases_of_study(name)),
+            sources=sources(
+                "workflow/*.py",
+                "workflow/figures/style.py",
+                f"workflow/studies/{study_name}*.py",
+                "workflow/studies/__init__.py",
+            ),
+        output:
+            table=f"results/tables/{study_name}.csv",
+            figures=expand(
+                "results/figures/{figure}.{kind}", figure=study_figures, kind=["png", "svg"]
+            ),
+        log:
+            f"results/logs/studies/{study_name}.log",
+        params:
+            study=STUDY,
+            name=study_name,
+        message:
+            f"Evaluating the study {study_name}"
+        shell:
+            "python -m workflow study --study {params.study:q} --name {params.name:q}"
+            " --table {output.table:q} > {log:q} 2>&1"
