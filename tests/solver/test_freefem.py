@@ -1,0 +1,166 @@
+"""Running FreeFEM: what it is given, how it ends, and that nothing of it survives its limits."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+import pytest
+
+from solver import freefem
+from solver.freefem import EDP, FreeFemError, Limits, OutOfTime
+
+LIMITS = Limits(wall_time=30, memory=2000)
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Runs the text of a program; gives its usage."""
+
+    def run_text(text: str, limits: Limits = LIMITS, **flags):
+        program = tmp_path / "program.edp"
+        program.write_text(text)
+        return freefem.run(str(program), flags, tmp_path, tmp_path / "log", limits)
+
+    return run_text
+
+
+def test_a_program_runs_in_its_folder(run, tmp_path):
+    usage = run('ofstream out("found.txt"); out << 1 + 1 << endl;')
+    assert (tmp_path / "found.txt").read_text() == "2\n"
+    assert 0 < usage.cpu_seconds <= usage.seconds + 1
+    assert 5 < usage.peak_memory < 500
+
+
+def test_flags_arrive_to_the_last_digit(run, tmp_path):
+    run(
+        'include "arguments.idp"\n'
+        'ofstream out("found.txt"); out.precision(17);\n'
+        'out << requireReal("-third") << " " << requireInt("-count") << " "\n'
+        '    << requireReal("-small") << " " << requireReal("-minus") << endl;',
+        third=1 / 3,
+        count=7,
+        small=1e-300,
+        minus=-0.1,
+    )
+    third, count, small, minus = (tmp_path / "found.txt").read_text().split()
+    assert float(third) == 1 / 3
+    assert count == "7"
+    assert float(small) == 1e-300
+    assert float(minus) == -0.1
+
+
+def test_a_missing_flag_is_named(run, tmp_path):
+    with pytest.raises(FreeFemError, match="status 64: an argument is missing"):
+        run('include "arguments.idp"\nreal x = requireReal("-absent");', present=1)
+    assert "missing flag -absent" in freefem.tail(tmp_path / "log")
+
+
+@pytest.mark.parametrize(
+    ("text", "meaning"),
+    [
+        ("real x = ;", "status 1: the program does not compile"),
+        ('load "NoSuchPlugin"', "status 2: a plugin is missing"),
+        ("assert(1 == 2);", "it broke off while computing"),
+        ("exit(77);", "status 77: see its log"),
+    ],
+)
+def test_exit_codes_are_explained(run, text, meaning):
+    with pytest.raises(FreeFemError, match=meaning):
+        run(text)
+
+
+def test_a_signal_is_named():
+    assert "SIGSEGV" in freefem.explain(-signal.SIGSEGV)
+    assert "SIGKILL" in freefem.explain(-signal.SIGKILL)
+
+
+def alive(pid: int) -> bool:
+    """Whether a process still runs; one that only waits to be collected does not."""
+    try:
+        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def test_the_time_limit_ends_the_whole_group(run, tmp_path):
+    """Also a child that FreeFEM has started; and at once."""
+    start = time.monotonic()
+    with pytest.raises(OutOfTime, match=r"0\.7 s"):
+        run('exec("echo $$ > pid; exec sleep 60");', Limits(wall_time=0.7, memory=2000))
+    assert time.monotonic() - start < 10
+    pid = int((tmp_path / "pid").read_text())
+    for _ in range(50):
+        if not alive(pid):
+            break
+        time.sleep(0.1)
+    assert not alive(pid)
+
+
+def test_an_endless_loop_is_ended(run):
+    with pytest.raises(OutOfTime):
+        run("real x = 0; while (true) x += 1;", Limits(wall_time=0.5, memory=2000))
+
+
+def test_an_interruption_ends_it_too(run, tmp_path, monkeypatch):
+    """Ctrl-C while waiting leaves no process behind."""
+    waited = freefem.subprocess.Popen.wait
+
+    def interrupt(process, timeout=None):
+        if timeout is not None:
+            while not (tmp_path / "pid").exists():
+                time.sleep(0.01)
+            raise KeyboardInterrupt
+        return waited(process)
+
+    monkeypatch.setattr(freefem.subprocess.Popen, "wait", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        run('exec("echo $$ > new; mv new pid; exec sleep 60");')
+    pid = int((tmp_path / "pid").read_text())
+    for _ in range(50):
+        if not alive(pid):
+            break
+        time.sleep(0.1)
+    assert not alive(pid)
+
+
+def test_the_memory_limit_is_kept(run):
+    """An allocation beyond it fails, and is an error like any other."""
+    with pytest.raises(FreeFemError):
+        run("real[int] x(100000000); x = 1;", Limits(wall_time=30, memory=700))
+    run("real[int] x(1000000); x = 1;", Limits(wall_time=30, memory=700))
+
+
+def test_no_core_file_is_left(run, tmp_path):
+    with pytest.raises(FreeFemError, match="SIGSEGV"):
+        run('exec("kill -SEGV $PPID; sleep 1");')
+    assert not list(tmp_path.glob("core*"))
+
+
+def test_without_freefem_the_message_says_what_to_do(monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(FreeFemError, match=r"FreeFem\+\+ is not on PATH; \./setup\.sh"):
+        freefem.executable()
+
+
+def test_environment_searches_our_includes_first(monkeypatch):
+    monkeypatch.setenv("FF_INCLUDEPATH", "/theirs")
+    monkeypatch.setenv("FF_LOADPATH", "/their/plugins")
+    found = freefem.environment()
+    assert found["FF_INCLUDEPATH"] == f"{EDP};;/theirs"
+    assert found["FF_LOADPATH"] == "/their/plugins"
+    assert found["OMP_NUM_THREADS"] == found["OPENBLAS_NUM_THREADS"] == "1"
+    assert found["PATH"] == os.environ["PATH"]
+
+
+def test_command_is_a_list_without_a_shell():
+    given = freefem.command("solid.edp", {"mesh": "a b;c.msh", "kappa": 1000.0, "count": 3})
+    assert given[1:5] == ["-nw", "-v", "0", str(EDP / "solid.edp")]
+    assert given[5:] == ["-mesh", "a b;c.msh", "-kappa", "1000.0", "-count", "3"]
+
+
+def test_tail_of_a_log(tmp_path):
+    log = tmp_path / "log"
+    assert freefem.tail(log) == ""
+    log.write_bytes(b"\xff\n" + b"\n".join(str(k).encode() for k in range(100)))
+    assert freefem.tail(log).splitlines() == [str(k) for k in range(85, 100)]

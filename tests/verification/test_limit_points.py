@@ -1,0 +1,90 @@
+"""Bare tubes past their largest pressure: a fold without a load, an asymptote at a held length.
+
+Exact: an incompressible Mooney-Rivlin tube, its energy per reference length psi(r, lz) by Gauss
+points, derivatives by complex steps.
+"""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, minimize_scalar
+
+from geometry.section import SectionMesh
+from solver.effects import Effects
+from solver.load_path import LoadPath
+from solver.material import MooneyRivlin
+from solver.numerics import Numerics
+from solver.status import CaseStatus, StateStatus
+
+C10, C01, INNER, OUTER = 0.345083, 0.083805, 10.0, 12.0
+ALMOST_INCOMPRESSIBLE = MooneyRivlin(c10=C10, c01=C01, kappa=1e5)
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
+RADII = INNER + (OUTER - INNER) / 2 * (1 + NODES)
+
+
+def pressure_and_force(r: float, lz: float) -> tuple[float, float]:
+    """What holds the tube at inner radius r and stretch lz [MPa, N]."""
+
+    def psi(r: complex, lz: complex) -> complex:
+        a, b = (r**2 + (RADII**2 - INNER**2) / lz) / RADII**2, lz**2
+        w = C10 * (a + b + 1 / (a * b) - 3) + C01 * (a * b + 1 / a + 1 / b - 3)
+        return np.sum(w * 2 * math.pi * RADII * WEIGHTS) * (OUTER - INNER) / 2
+
+    h = 1e-30
+    pressure = psi(r + 1j * h, lz).imag / h / (2 * math.pi * r * lz)
+    return pressure, psi(r, lz + 1j * h).imag / h - pressure * math.pi * r**2
+
+
+def pressure_without_load(r: float) -> float:
+    lz = brentq(lambda lz: pressure_and_force(r, lz)[1], 0.9, 3)
+    return pressure_and_force(r, lz)[0]
+
+
+@pytest.fixture
+def sliding_tube(make_case, solve_case, bare_tube):
+    def solve(path: LoadPath):
+        return solve_case(
+            make_case(
+                model="solid",
+                muscle=bare_tube,
+                rubber=ALMOST_INCOMPRESSIBLE,
+                effects=Effects(end="sliding"),
+                numerics=Numerics(section=SectionMesh(cap_step=5, growth=1, body_step=1)),
+                path=path,
+            )
+        )
+
+    return solve
+
+
+def largest(solution) -> float:
+    """The extreme value that the reason names."""
+    return float(re.search(r" at ([-\d.e]+)", solution.reason)[1])
+
+
+def test_fold_without_a_load(sliding_tube):
+    fold = minimize_scalar(lambda r: -pressure_without_load(r), bounds=(12, 30), method="bounded")
+    solution = sliding_tube(LoadPath(kind="isotonic", held=0.0, stops=(0.05, 0.1, 0.13, 0.15)))
+    assert solution.status is CaseStatus.LIMIT_POINT
+    assert solution.reason.startswith("fold of the pressure")
+    assert largest(solution) == pytest.approx(-fold.fun, rel=1e-3)
+    for p, diameter in zip(
+        (0.05, 0.1, 0.13), solution.states["inner_diameter_inflated"], strict=False
+    ):
+        r = brentq(lambda r, p=p: pressure_without_load(r) - p, 10.0, fold.x)
+        assert diameter / 2 == pytest.approx(r, rel=1e-4)
+    assert solution.state_status[3] is StateStatus.NOT_REACHED
+
+
+def test_asymptote_at_a_held_length(sliding_tube):
+    solution = sliding_tube(LoadPath(kind="isometric", held=0.0, stops=(0.05, 0.15, 0.2)))
+    limit = 2 * (C10 + C01) * math.log(OUTER / INNER)
+    assert solution.status is CaseStatus.LIMIT_POINT
+    assert solution.reason.startswith("asymptote of the pressure")
+    assert largest(solution) == pytest.approx(limit, rel=0.01)
+    assert largest(solution) < limit * (1 + 1e-6)
+    for p, diameter in zip((0.05, 0.15), solution.states["inner_diameter_inflated"], strict=False):
+        assert pressure_and_force(diameter / 2, 1.0)[0] == pytest.approx(p, rel=1e-4)
+    assert solution.state_status[2] is StateStatus.NOT_REACHED
