@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 from geometry import section
 from geometry.muscle import Muscle
-from solver.case import Case, digest
+from solver.case import MESHED, Case, digest
 from solver.load_path import LoadPath
 from workflow.config import Study
 from workflow.schema import HELD_KEY, SWEPT_KEY, Scene
@@ -45,7 +45,8 @@ class Place:
 def mesh_file(case: Case) -> str | None:
     """File name of the mesh of a case, None for a model without."""
     spec = case.mesh_spec()
-    return f"{digest(spec)}.{SUFFIX[case.model]}" if spec else None
+    suffix = "msh" if MESHED.get(case.model) == "section" else "mesh"
+    return f"{digest(spec)}.{suffix}" if spec else None
 
 
 @dataclass(frozen=True)

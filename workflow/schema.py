@@ -5,14 +5,15 @@ solver/); here stands what a file may contain. config/README.md describes every 
 """
 
 import re
-from typing import Annotated, Any
+from dataclasses import fields
+from typing import Annotated, Any, get_origin
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model
 from pydantic_core import PydanticCustomError
 
 from geometry.refusal import is_count
 from solver.case import MODELS
-from solver.effects import End, ThreadLaw
+from solver.effects import Effects
 from solver.load_path import PathKind
 from solver.numerics import KINDS
 from workflow.grid import expand
@@ -86,8 +87,9 @@ def _sorted_names(value: object) -> tuple[str, ...]:
     return tuple(sorted(_each_once(value)))
 
 
-def _tuple(value: object) -> object:
-    return tuple(value) if isinstance(value, list) else value
+def _tuple_of(kind: Any) -> Any:
+    """A tuple, which a file writes as a list."""
+    return Annotated[kind, BeforeValidator(lambda v: tuple(v) if isinstance(v, list) else v)]
 
 
 def _threads(value: object) -> object:
@@ -99,7 +101,6 @@ def _threads(value: object) -> object:
 Name = Annotated[str, AfterValidator(_name)]
 Names = Annotated[tuple[Name, ...], BeforeValidator(_sorted_names)]
 Values = Annotated[tuple[float, ...], BeforeValidator(_values)]
-Depths = Annotated[tuple[float, float], BeforeValidator(_tuple)]
 
 
 class Entry(BaseModel):
@@ -124,7 +125,7 @@ class MuscleEntry(Entry):
     wall_thickness: float | None = None
     length: float | None = None
     cap_length: float | None = None
-    layer_depths: Depths | None = None
+    layer_depths: _tuple_of(tuple[float, float]) | None = None
     threads: Annotated[Any, BeforeValidator(_threads)] = None
     lead: float | None = None
     angle: float | None = None
@@ -133,21 +134,21 @@ class MuscleEntry(Entry):
     material: Name | None = None
 
 
-class EffectsEntry(Entry):
-    """Switches of a variant."""
-
-    end: _one_of(*End) = End.CLAMP
-    threads: _one_of(*ThreadLaw) = ThreadLaw.TENSION_ONLY
+EffectsEntry = create_model(
+    "EffectsEntry",
+    __base__=Entry,
+    **{f.name: (_one_of(*f.type), f.default) for f in fields(Effects)},
+)
 
 
 def _overrides(name: str, kind: Any) -> type[Entry]:
     """A schema with the fields of a dataclass, all of which may be left out."""
-    types = {"rows": Annotated[tuple[int, int, int], BeforeValidator(_tuple)]}
-    fields = {
-        key: (types.get(key, field.type) | None, None)
-        for key, field in kind.__dataclass_fields__.items()
+    types = {
+        f.name: f.type if get_origin(f.type) is None else _tuple_of(f.type) for f in fields(kind)
     }
-    return create_model(f"{name}_entry", __base__=Entry, **fields)
+    return create_model(
+        f"{name}_entry", __base__=Entry, **{key: (kind | None, None) for key, kind in types.items()}
+    )
 
 
 NumericsEntry = create_model(
