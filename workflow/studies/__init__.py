@@ -4,7 +4,7 @@ A study is a module here with
 
 - ``cases(study) -> list[StudyCase]``  what to solve, from the muscles of the study file
 - ``table(solved) -> DataFrame``       all that its figures draw, and more
-- ``draw(table) -> dict[str, Figure]`` figures by name, those of FIGURES; drawing computes nothing
+- ``draw(solved, table)``             figures by name, those of FIGURES
 
 and runs as ``snakemake --cores 2 <name>``.
 """
@@ -78,6 +78,6 @@ def evaluate(name: str, study_file: str, table: Path, figures: Path) -> None:
     rows = module(name).table(solved)
     with aside(table) as beside:
         rows.to_csv(beside, index=False)
-    for figure, drawing in module(name).draw(rows).items():
+    for figure, drawing in module(name).draw(solved, rows).items():
         for suffix in (".svg", ".png"):
             style.save(drawing, (figures / figure).with_suffix(suffix))

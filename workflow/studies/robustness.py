@@ -1,18 +1,17 @@
 """Do hard cases stay stable? Named hard cases on three meshes, and a Latin hypercube of muscles.
 
-Named cases run from -5 to 25 % of contraction in steps of 1 %. They end at 25 %, or at a limit that the
-three meshes agree on. The hypercube spans what may be built; a sample that cannot be built (threads
-closer than their diameter) is drawn again. A random tenth of it is solved again on a mesh twice as
-fine with steps half as long.
+Named cases run from -5 to 25 % of contraction in steps of 1 %. They end at 25 %, or at a limit that
+the three meshes agree on. The hypercube spans what may be built; a sample that cannot be built
+(threads closer than their diameter) is drawn again. A tenth of it is solved again on a mesh twice
+as fine with steps half as long.
 """
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
-import pandas as pd
 from scipy.stats import qmc
 
 from geometry.meridian import MeridianMesh
@@ -26,9 +25,7 @@ from solver.material import MooneyRivlin, Thread
 from solver.numerics import Numerics
 from workflow.config import Study
 from workflow.studies import Solved, StudyCase
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from workflow.studies.robustness_table import table
 
 MUSCLE, SILICONE = "dmsp20", "dmsp20_silicone"  # of the study file
 CONTRACTIONS = tuple(round(-0.05 + 0.01 * k, 2) for k in range(31))
@@ -52,7 +49,19 @@ LIMITS = {  # of the hypercube: name -> (low, high, logarithmic)
     "pressure": (0.01, 0.8, False),  # MPa
     "path": (0, 5, False),  # 0 to 3 isobaric, to 4 isometric, to 5 isotonic
 }
+__all__ = ["cases", "draw", "table"]
+
 LAYERS = (0.15, 0.45)  # depth of the layers, shares of the wall
+
+
+def draw(solved: Sequence[Solved], rows: Any) -> dict[str, Any]:
+    """The figures of the study; matplotlib is imported only for them."""
+    from workflow.studies import robustness_figures
+
+    return {
+        "robustness": robustness_figures.overview(rows),
+        "robustness_worst": robustness_figures.worst(solved, rows),
+    }
 
 
 def cases(study: Study) -> list[StudyCase]:
@@ -68,7 +77,7 @@ class _Hard:
     muscle: Muscle | None = None
     rubber: MooneyRivlin | None = None
     stiffness: float | None = None
-    effects: Effects = Effects()
+    effects: Effects = field(default_factory=Effects)
 
 
 def _hard_cases(study: Study) -> dict[str, _Hard]:

@@ -1,0 +1,118 @@
+"""What becomes of the robustness study: one row per case, and how far equal cases agree."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from solver.status import StateStatus
+from workflow.studies import Solved
+
+VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
+
+
+def table(solved: Sequence[Solved]) -> pd.DataFrame:
+    """Status, smallest det F, iterations and agreement of every case.
+
+    ``difference`` is the largest difference of force from the case named in ``against`` (the finest
+    mesh of the same model, or the solid on its finest mesh for a membrane), at states that both
+    have, as a share of the largest force of that case.
+    """
+    finest = _finest(solved)
+    rows = []
+    for entry in solved:
+        reference = finest[_group(entry)]
+        rows.append(_row(entry) | _agreement(entry, reference))
+    return pd.DataFrame(rows)
+
+
+def _group(entry: Solved) -> tuple[str, str]:
+    return str(entry.asked.tags["set"]), str(entry.asked.tags["name"])
+
+
+def _finest(solved: Sequence[Solved]) -> dict[tuple[str, str], Solved]:
+    """Of every named case and sample the solid on its finest mesh."""
+    found: dict[tuple[str, str], Solved] = {}
+    for entry in solved:
+        if entry.asked.case.model != "solid":
+            continue
+        known = found.get(_group(entry))
+        if known is None or known.asked.tags["mesh"] < entry.asked.tags["mesh"]:
+            found[_group(entry)] = entry
+    return found
+
+
+def _row(entry: Solved) -> dict[str, object]:
+    case, solution = entry.asked.case, entry.solution
+    muscle, states = case.muscle, solution.states
+    assert muscle.braid is not None
+    assert case.thread is not None
+    reached = np.isfinite(states["force"])
+    count = max(int(reached.sum()), 1)
+    modulus = case.rubber.c10 + case.rubber.c01
+    pressure = max(case.path.stops) if case.path.kind != "isobaric" else case.path.held
+    return {
+        **entry.asked.tags,
+        "model": case.model,
+        "path": case.path.kind.value,
+        "status": solution.status.value,
+        "reason": solution.reason,
+        "states": len(reached),
+        "states reached": int(reached.sum()),
+        "unstable states": sum(s is StateStatus.UNSTABLE for s in solution.state_status),
+        "invalid states": sum(s is StateStatus.INVALID_STATE for s in solution.state_status),
+        "smallest det F": _smallest(states["min_det_f"]),
+        "smallest det F at nodes": _smallest(states["min_det_f_nodes"]),
+        "iterations per state": float(np.nansum(states["iterations"])) / count,
+        "cutbacks": int(np.nansum(states["cutbacks"])),
+        "largest force [N]": _largest_force(entry),
+        "pressure by modulus": pressure / modulus,
+        # hoop strain of threads that carry all of the pressure, as in a thin tube
+        "thread strain": pressure
+        * muscle.inner_diameter**2
+        / (muscle.braid.threads * case.thread.stiffness),
+        "record": case.key,
+    }
+
+
+def _agreement(entry: Solved, reference: Solved) -> dict[str, object]:
+    if entry is reference:
+        return {"against": "", "difference": np.nan, "difference at": np.nan}
+    swept = "contraction" if entry.asked.case.path.kind == "isobaric" else "pressure"
+    ours, theirs = _valid_forces(entry), _valid_forces(reference)
+    common = sorted(ours.keys() & theirs.keys())
+    if not common:
+        return {"against": reference.asked.label, "difference": np.nan, "difference at": np.nan}
+    gaps: NDArray[np.float64] = np.abs([ours[stop] - theirs[stop] for stop in common])
+    worst = int(np.argmax(gaps))
+    return {
+        "against": reference.asked.label,
+        "difference": float(gaps[worst]) / _largest_force(reference),
+        "difference at": common[worst] if swept else np.nan,
+    }
+
+
+def _valid_forces(entry: Solved) -> dict[float, float]:
+    """Force, or contraction in units of the force's scale on isotonic paths, by stop."""
+    isotonic = entry.asked.case.path.kind == "isotonic"
+    values = entry.solution.states["contraction" if isotonic else "force"]
+    return {
+        stop: float(value)
+        for stop, value, status in zip(
+            entry.asked.case.path.stops, values, entry.solution.state_status, strict=False
+        )
+        if status in VALID
+    }
+
+
+def _largest_force(entry: Solved) -> float:
+    """What a difference is a share of; isotonic paths are compared by contraction, as it is."""
+    if entry.asked.case.path.kind == "isotonic":
+        return 1.0
+    force = np.abs(entry.solution.states["force"])
+    return float(np.nanmax(force)) if np.isfinite(force).any() else np.nan
+
+
+def _smallest(values: NDArray[np.float64]) -> float:
+    return float(np.nanmin(values)) if np.isfinite(values).any() else np.nan
