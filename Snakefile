@@ -13,6 +13,7 @@ include: "workflow/rules/mesh.smk"
 include: "workflow/rules/solve.smk"
 include: "workflow/rules/gather.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/verdict.smk"
 include: "workflow/rules/studies.smk"
 
 
@@ -23,6 +24,7 @@ rule all:
         map(record_of, PLAN.cases),  # else one that was deleted would not be missed
         expand("results/muscles/{muscle}.step", muscle=PLAN.shown),
         "results/dataset.nc",
+        deviations(),
         "results/complete.txt",
     message:
         "All is there: results/figures, results/dataset.nc, results/muscles"

@@ -42,6 +42,10 @@ def _parser() -> argparse.ArgumentParser:
     entry = add(_figure, "Draw the figure of a scene and write its numbers.")
     entry.add_argument("--scene", required=True)
     entry.add_argument("--output", type=Path, required=True, help=".png; .svg and .csv beside it")
+    entry = add(_deviation, "Compare the dataset with the reference maps.", study=False)
+    entry.add_argument("--dataset", type=Path, default=DATASET)
+    entry.add_argument("--muscles", nargs="+", required=True, help="those the maps are of")
+    entry.add_argument("--table", type=Path, required=True)
     add(_explain, "Say which cases the scenes ask for, and which they share.")
     add(_cases, "List the cases: key, status of the record, label.")
     entry = add(_study, "Write the table and the figures of a study of the models.")
@@ -75,6 +79,19 @@ def _figure(given: argparse.Namespace) -> int:
     from workflow import figure
 
     figure.make(_plan(given), given.scene, given.output)
+    return 0
+
+
+def _deviation(given: argparse.Namespace) -> int:
+    import xarray as xr
+
+    from workflow import deviation
+    from workflow.aside import aside
+
+    with xr.open_datatree(given.dataset, engine="h5netcdf") as tree:
+        rows = deviation.table(tree, given.muscles)
+    with aside(given.table) as beside:
+        rows.to_csv(beside, index=False, float_format="%.6g")
     return 0
 
 
