@@ -18,7 +18,8 @@ from solver.load_path import Control, LoadPath, Waypoint
 from solver.numerics import Newton, Numerics
 
 MODELS = ("membrane", "solid")
-TIGHT = Numerics(newton=Newton(tolerance=1e-11))
+COARSE = SectionMesh(cap_step=2.0, growth=2.0, body_step=4.0)
+TIGHT = Numerics(newton=Newton(tolerance=1e-11), section=COARSE)
 AREA = math.pi * 10**2  # of the cap, mm2
 
 
@@ -117,19 +118,20 @@ def scaled(values: dict, path: tuple, factor: float) -> dict:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_perturbed_parameters(make_case, solve_case, model):
-    """1e-8 more of any number of a case moves the force by less than 1e-5 of it."""
-    muscle = Muscle.from_dict(as_floats({**make_case().muscle.as_dict(), "length": 60}))
-    coarse = Numerics(section=SectionMesh(cap_step=2.0, growth=2.0, body_step=2.0))
-    case = make_case(model=model, muscle=muscle, numerics=coarse)
+    """1e-8 more or less of every number of a case moves the force by less than 1e-5 of it."""
+    muscle = Muscle.from_dict(as_floats(make_case().muscle.as_dict()))
+    case = make_case(model=model, muscle=muscle, numerics=TIGHT)
     force = solve_case(case).states["force"][0]
     values = json.loads(json.dumps(as_floats(case.as_dict())))
-    moved = {}
-    for path in numbers(values):
-        near = solve_case(Case.from_dict(scaled(values, path, 1 + 1e-8))).states["force"][0]
-        moved[path] = abs(near / force - 1)
-    assert len(moved) > 12
-    assert max(moved.values()) < 1e-5, moved
-    assert max(moved.values()) > 0, "the force depends on something"
+    paths = numbers(values)
+    assert len(paths) > 12
+    signs = np.random.default_rng(0).choice([-1, 1], size=(5, len(paths)))
+    for row in signs:
+        near = values
+        for path, sign in zip(paths, row, strict=True):
+            near = scaled(near, path, 1 + sign * 1e-8)
+        moved = abs(solve_case(Case.from_dict(near)).states["force"][0] / force - 1)
+        assert 0 < moved < 1e-5
 
 
 def as_floats(values):
@@ -175,7 +177,7 @@ def in_units(make_case, solve_case):
 
     def states(model: str, kind: str, length: float, stress: float):
         unit = units(length, stress)
-        case = make_case(model=model).as_dict()
+        case = make_case(model=model, numerics=TIGHT).as_dict()
         muscle = case["muscle"]
         for name in muscle.keys() - {"braid"}:
             muscle[name] *= length
@@ -248,16 +250,6 @@ def test_membrane_converges_with_fourth_order(solve):
     order = math.log2(abs(force[1] - force[2]) / abs(force[2] - force[4]))
     assert order > 3.5
     assert abs(force[1] - force[4]) < 1e-5 * 672
-
-
-def test_clamped_solid_converges(solve):
-    """Second order at least: the springs of the clamp have a kink, so the fourth is not reached."""
-    force = {}
-    for m in (1, 2, 3):
-        mesh = Numerics(newton=TIGHT.newton, section=SectionMesh(refinement=m))
-        force[m] = solve(model="solid", path=isobaric(0.1), numerics=mesh)["force"][0]
-    second_order = (1 / 4 - 1 / 9) / (1 - 1 / 4)  # of steps h, h/2, h/3
-    assert abs(force[2] - force[3]) / abs(force[1] - force[2]) < second_order
 
 
 # --- past the largest pressure --------------------------------------------------------------------
