@@ -1,6 +1,7 @@
 """The record of a case: what was written is read, and only a whole record is one."""
 
 import json
+import os
 import time
 
 import h5py
@@ -146,6 +147,15 @@ def test_a_record_is_whole_or_absent(tmp_path, case, solution):
         record.write(path, case, broken)
     assert list(tmp_path.iterdir()) == [path]
     assert path.read_bytes() == before
+
+
+def test_a_record_is_renamed_into_place(tmp_path, written, case, solution):
+    """Whoever reads the old one, reads it to its end."""
+    old = tmp_path / "old.h5"
+    os.link(written, old)
+    before = old.read_bytes()
+    record.write(written, case, Solution(**vars(solution) | {"reason": "another"}))
+    assert old.read_bytes() == before != written.read_bytes()
 
 
 # --- what is no record ----------------------------------------------------------------------------

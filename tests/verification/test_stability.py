@@ -225,6 +225,8 @@ def test_no_hidden_unit(in_units, model, kind, length, stress):
     """In other units the same muscle has the same states: there is no absolute tolerance."""
     expected, found = in_units(model, kind, 1.0, 1.0), in_units(model, kind, length, stress)
     unit = units(length, stress)
+    for name in ("iterations", "cutbacks"):
+        np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
     for name, dimension in UNIT_OF_RESULT.items():
         values = expected[name]
         if model == "cylinder" and name in ("volume", "energy", "stiffness"):
