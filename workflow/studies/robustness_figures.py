@@ -29,8 +29,8 @@ def overview(table: pd.DataFrame) -> Figure:
     """Named cases by smallest det F and mesh; the hypercube by status; its cost."""
     named = table[(table["set"] == "named") & (table["model"] == "solid")]
     cube = table[(table["set"] == "hypercube") & (table["model"] == "solid") & (table["mesh"] == 1)]
-    figure, places = style.grid(style.FULL, 7.4, 1, 2, gap=(0.5, 0.5), width_ratios=[1.25, 1])
-    figure.subplots_adjust(left=0.24)
+    figure, places = style.grid(style.FULL, 7.4, 1, 2, gap=(0.75, 0.5), width_ratios=[1.2, 1])
+    figure.subplots_adjust(left=0.19, bottom=0.08)
     left = places[0, 0].subgridspec(1, 2, wspace=0.12)
     first = figure.add_subplot(left[0, 0])
     second = figure.add_subplot(left[0, 1], sharey=first)
@@ -60,7 +60,7 @@ def _named_det(ax: Any, named: pd.DataFrame) -> None:
     ax.set(yticks=range(len(names)), yticklabels=names, xlim=(0, 1.02), xlabel="smallest det F")
     ax.invert_yaxis()
     ax.set_title("named cases, −5 to 25 %")
-    ax.legend(loc="lower left", fontsize=7, handlelength=1, borderaxespad=0.1)
+    ax.legend(loc="upper left", fontsize=7, handlelength=1, borderaxespad=0.1)
     bad = named[named["status"] != "converged"]
     for name, rows in bad.groupby("name"):
         ax.text(0.02, names.index(name), rows["status"].iloc[0], fontsize=7, va="center")
@@ -79,7 +79,7 @@ def _named_mesh(ax: Any, named: pd.DataFrame) -> None:
             color="black",
         )
     ax.axvline(GOOD_MESH, color=style.SOFT, linewidth=0.8, linestyle=(0, (4, 2)))
-    ax.set(xscale="log", xlabel="force, from mesh 3\n[of largest]")
+    ax.set(xscale="log", xlabel="difference of force\nfrom mesh 3 [of largest]")
     ax.tick_params(labelleft=False)
 
 
@@ -94,7 +94,8 @@ def _cube(ax: Any, cube: pd.DataFrame) -> None:
             **STATUS[str(status)],
         )
     ax.set(xscale="log", yscale="log", ylabel="p / (C10 + C01)")
-    ax.set_xlabel("p D² / (threads × EA): how far threads stretch")
+    ax.set_xlabel("p D² / (threads × EA), a thread strain")
+    ax.set_ylim(bottom=cube["pressure by modulus"].min() / 20)  # room for the legend
     ax.set_title(f"hypercube, {len(cube)} muscles")
     ax.legend(loc="lower left", fontsize=7, handlelength=1, borderaxespad=0.1)
 
@@ -147,7 +148,7 @@ def _wall(ax: Any, entry: Solved, row: pd.Series) -> None:
     ax.set_xlim(cap - 2.5 * near, cap + muscle.cap_length + 0.5)
     seen = corners[corners["z [mm]"] > cap - 2.5 * near]["r [mm]"]
     ax.set_ylim(seen.min() - 1, seen.max() + 1)
-    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_aspect("equal", adjustable="box", anchor="W")
     ax.set_title(
         f"{entry.asked.label}: {row['status']}, det F {row['smallest det F']:.2f}, "
         f"at nodes {row['smallest det F at nodes']:.2f}",
