@@ -6,13 +6,14 @@ import shutil
 import signal
 import subprocess
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 EDP = Path(__file__).parent / "edp"
 DEBIAN_PLUGINS = Path("/usr/lib/freefem++")  # where Debian puts them; its program looks elsewhere
 LOG_TAIL = 15  # lines of the log that a message quotes
 MIB = 1024**2
+SIZES = {"unknowns"}  # parts of a usage that do not add up
 OWN_EXITS = {64: "an argument is missing"}
 FREEFEM_EXITS = {
     1: "the program does not compile",
@@ -39,11 +40,33 @@ class Limits:
 
 @dataclass(frozen=True, kw_only=True)
 class Usage:
-    """What a solve has used."""
+    """What a solve has used.
+
+    Attributes
+    ----------
+    parts : what the program says of itself (solver/edp/cost.idp): CPU seconds by purpose,
+        iterations, factorisations, unknowns; empty if it does not
+    """
 
     seconds: float  # wall
     cpu_seconds: float
     peak_memory: float  # MB
+    parts: dict[str, float] = field(default_factory=dict)
+
+    def __add__(self, other: "Usage") -> "Usage":
+        """What two runs of the same program, one after the other, have used."""
+        names = [*self.parts, *(name for name in other.parts if name not in self.parts)]
+        return Usage(
+            seconds=self.seconds + other.seconds,
+            cpu_seconds=self.cpu_seconds + other.cpu_seconds,
+            peak_memory=max(self.peak_memory, other.peak_memory),
+            parts={
+                name: (max if name in SIZES else sum)(
+                    (self.parts.get(name, 0.0), other.parts.get(name, 0.0))
+                )
+                for name in names
+            },
+        )
 
 
 def executable() -> str:
@@ -119,11 +142,23 @@ def run(
     if status != 0:
         raise FreeFemError(explain(status))
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    parts = _parts(workdir / "cost.csv")
+    # what the system says is the largest of all children, and of this process before it became one
+    own_memory = parts.pop("peak_memory", 0.0)
     return Usage(
         seconds=time.monotonic() - start,
         cpu_seconds=after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
-        peak_memory=after.ru_maxrss / 1024,
+        peak_memory=own_memory or after.ru_maxrss / 1024,
+        parts=parts,
     )
+
+
+def _parts(path: Path) -> dict[str, float]:
+    """The rows of a program's cost.csv; none if it has written none."""
+    if not path.exists():
+        return {}
+    rows = (line.split(",") for line in path.read_text().splitlines()[1:])
+    return {name: float(value) for name, value in rows}
 
 
 def explain(status: int) -> str:

@@ -35,13 +35,14 @@ def solve(
         return failure(case, CaseStatus.MESH_FAILED, f"no mesh at {mesh}"), None
     states = unreached(case.path.states)
     fields: dict[int, dict[str, NDArray[np.float64]]] = {}
-    usages = []
+    usage: freefem.Usage | None = None
     for way in case.path.ways():
         end = _follow(case, way, mesh, log, limits, states, fields)
-        usages += [end.usage] if end.usage else []
+        if end.usage is not None:
+            usage = end.usage if usage is None else usage + end.usage
         if end.status is not None or np.isfinite(states["force"]).all():
             break
-    return _with_diameter(case, _judge(case, states, fields, end, log)), _total(usages)
+    return _with_diameter(case, _judge(case, states, fields, end, log)), usage
 
 
 @dataclass(frozen=True)
@@ -205,17 +206,6 @@ def _judge(
         state_status=each,
         fields=fields,
         log=freefem.tail(log) if end.status else "",
-    )
-
-
-def _total(usages: list[freefem.Usage]) -> freefem.Usage | None:
-    """Of several runs together; None if there was none that ended by itself."""
-    if not usages:
-        return None
-    return freefem.Usage(
-        seconds=sum(u.seconds for u in usages),
-        cpu_seconds=sum(u.cpu_seconds for u in usages),
-        peak_memory=max(u.peak_memory for u in usages),
     )
 
 

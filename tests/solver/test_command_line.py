@@ -11,6 +11,7 @@ from solver import record
 from solver.load_path import LoadPath
 from solver.status import CaseStatus
 
+PARTS = ("start", "assembly", "factor", "residual", "rest")
 ROOT = Path(__file__).parents[2]
 
 
@@ -45,6 +46,11 @@ def test_a_curve(command_line, tmp_path, make_case, mesh_of):
     assert cost["status"] == "converged"
     assert 0 < cost["freefem_seconds"] < cost["total_seconds"]
     assert 10 < cost["freefem_peak_memory"] < 1000
+    parts = [cost[f"freefem_{name}_seconds"] for name in PARTS]
+    assert min(parts) >= 0
+    assert sum(parts) == pytest.approx(cost["freefem_cpu_seconds"], rel=0.3, abs=0.1)
+    assert cost["freefem_unknowns"] == 768
+    assert cost["freefem_factorisations"] >= cost["freefem_iterations"] > 0
     assert sorted(p.name for p in tmp_path.iterdir()) == ["cost", "log", "record"]
 
 

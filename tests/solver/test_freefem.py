@@ -164,3 +164,18 @@ def test_tail_of_a_log(tmp_path):
     assert freefem.tail(log) == ""
     log.write_bytes(b"\xff\n" + b"\n".join(str(k).encode() for k in range(100)))
     assert freefem.tail(log).splitlines() == [str(k) for k in range(85, 100)]
+
+
+def test_what_a_program_says_of_its_cost(run, tmp_path):
+    """Its own peak of memory is taken before that of all children of this process."""
+    usage = run(
+        'ofstream out("cost.csv");\n'
+        'out << "name,value" << endl << "factor_seconds,0.25" << endl;\n'
+        'out << "unknowns,62" << endl << "peak_memory,12.5" << endl;'
+    )
+    assert usage.parts == {"factor_seconds": 0.25, "unknowns": 62}
+    assert usage.peak_memory == 12.5
+    both = usage + usage
+    assert both.parts == {"factor_seconds": 0.5, "unknowns": 62}
+    assert both.peak_memory == 12.5
+    assert both.seconds == 2 * usage.seconds
