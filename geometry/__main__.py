@@ -7,8 +7,8 @@ SPEC is a JSON file (or - for standard input) that says what to make::
     {"kind": "cell", "thread_radius": 0.3, "muscle": {...}, "mesh": {...}} -> Medit .mesh
     {"kind": "whole", "muscle": {...}}                                    -> STEP
 
-with the fields of Muscle, MeridianMesh, SectionMesh and CellMesh. Ends with status 2 and one message
-if that cannot be built.
+with the fields of Muscle, MeridianMesh, SectionMesh and CellMesh. Ends with status 2
+and one message if that cannot be built.
 """
 
 import argparse

@@ -19,7 +19,8 @@ from solver.numerics import KINDS, NUMERICS_OF_MODEL, Numerics
 from solver.refusal import UnsolvableCase
 
 MODELS = tuple(NUMERICS_OF_MODEL)
-MESHED = {"membrane": "meridian", "solid": "section"}
+MESHED = {"membrane": "meridian", "solid": "section", "cell": "cell"}
+WITH_KAPPA = {"solid", "cell"}  # the others are incompressible
 INCOMPRESSIBLE = {"kappa": 1e300}
 UNREAD: dict[str, dict[str, dict[str, float]]] = {  # by model, what it leaves out of the identity
     "geometric": {"muscle": {"wall_thickness": 1e9, "length": 1.0}},
@@ -89,13 +90,18 @@ class Case:
             values["effects"] = {}
         if self.model == "solid":
             values["effects"]["end"] = self.effects.end
-        else:
+        if self.model == "cell":
+            values["effects"]["twist"] = self.effects.twist
+            if self.muscle.braid is not None:
+                values["effects"]["layers"] = self.effects.layers
+        if self.model not in WITH_KAPPA:
             del values["rubber"]["kappa"]
         if self.model == "cylinder":
             del muscle["length"]
         slackens = self.muscle.braid is not None and self.effects.threads is ThreadLaw.TENSION_ONLY
         numerics = [*NUMERICS_OF_MODEL[self.model]]
         numerics += ["clamp"] * clamped + ["slack"] * slackens
+        numerics += ["spread"] * (self.model == "cell" and self.muscle.braid is not None)
         values["numerics"] = {name: asdict(getattr(self.numerics, name)) for name in numerics}
         if self.fields_at:
             values["fields_at"] = self.fields_at
@@ -117,12 +123,18 @@ class Case:
         kind = MESHED[self.model]
         values = self.as_dict()
         muscle = values["muscle"]
-        if muscle["braid"] is not None:
+        if kind == "cell":
+            muscle["length"] = 1.0  # shapes no cell
+        elif muscle["braid"] is not None:
             # lead and thread number shape no section: muscles that differ there share a mesh
             muscle["braid"] = {**muscle["braid"], "lead": 1.0, "threads": 1}
         spec = {"kind": kind, "muscle": muscle, "mesh": values["numerics"][kind]}
         if kind == "section":
             spec["end"] = self.effects.end
+        if kind == "cell":
+            spec["thread_radius"] = (
+                self.numerics.spread.radius_of(self.thread) if self.thread is not None else None
+            )
         return json.dumps(_canonical(spec), sort_keys=True, allow_nan=False)
 
     @classmethod

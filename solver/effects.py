@@ -21,15 +21,37 @@ class ThreadLaw(StrEnum):
     TWO_WAY = "two_way"  # pushes back: the paper's
 
 
+class Layers(StrEnum):
+    """What a layer of threads is in the model ``cell``."""
+
+    DISCRETE = "discrete"  # single threads, each spread over a tube
+    SMEARED = "smeared"  # the same stiffness, spread over the same depth all around
+    WIRE = "wire"  # single threads of zero thickness: the paper's, singular
+
+
+class Twist(StrEnum):
+    """Whether the ends of a muscle may turn against each other, in the model ``cell``."""
+
+    HELD = "held"  # no twist
+    FREE = "free"  # no torque
+
+
 @dataclass(frozen=True, kw_only=True)
 class Effects:
     """Switches of a case; the defaults are the ones that stay valid in hard cases."""
 
     end: End = field(default=End.CLAMP)
     threads: ThreadLaw = field(default=ThreadLaw.TENSION_ONLY)
+    layers: Layers = field(default=Layers.DISCRETE)
+    twist: Twist = field(default=Twist.HELD)
 
     def __post_init__(self) -> None:
-        for name, kind in (("end", End), ("threads", ThreadLaw)):
+        for name, kind in (
+            ("end", End),
+            ("threads", ThreadLaw),
+            ("layers", Layers),
+            ("twist", Twist),
+        ):
             value = getattr(self, name)
             if value not in list(kind):
                 raise UnsolvableCase(name, value, ", ".join(kind))

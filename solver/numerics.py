@@ -1,8 +1,10 @@
 """Numerical settings: what changes the error and the cost of a solve, but not the problem."""
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
+from geometry.cell import CellMesh
 from geometry.meridian import MeridianMesh
 from geometry.refusal import is_count, is_number
 from geometry.section import SectionMesh
@@ -73,6 +75,28 @@ class Slack:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Spread:
+    """Over which tube the model ``cell`` spreads a thread, as (1 - (rho / a)^2)^2.
+
+    The stiffness EA and the modulus E of the thread's material give its diameter d, and the tube
+    has the radius a = ``radius`` d: sqrt(1/2) gives it the second moment of a round thread.
+    """
+
+    radius: float = field(default=math.sqrt(0.5), metadata={"unit": "thread diameter"})
+    modulus: float = field(default=2100.0, metadata={"unit": "MPa"})  # E; the paper's
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "modulus"):
+            value = getattr(self, name)
+            if not (is_number(value) and value > 0):
+                raise UnsolvableCase(name, value, "a finite number > 0")
+
+    def radius_of(self, thread: Thread) -> float:
+        """Radius a of the tube of this thread [mm]."""
+        return self.radius * math.sqrt(4 * thread.stiffness / (math.pi * self.modulus))
+
+
+@dataclass(frozen=True, kw_only=True)
 class Numerics:
     """Settings of all models; a case keeps those that its model reads."""
 
@@ -81,6 +105,8 @@ class Numerics:
     section: SectionMesh = field(default_factory=SectionMesh)
     clamp: Clamp = field(default_factory=Clamp)
     slack: Slack = field(default_factory=Slack)
+    cell: CellMesh = field(default_factory=CellMesh)
+    spread: Spread = field(default_factory=Spread)
 
 
 NUMERICS_OF_MODEL: dict[str, tuple[str, ...]] = {
@@ -88,6 +114,7 @@ NUMERICS_OF_MODEL: dict[str, tuple[str, ...]] = {
     "cylinder": (),
     "membrane": ("newton", "meridian"),
     "solid": ("newton", "section"),
+    "cell": ("newton", "cell"),
 }
 KINDS: dict[str, Any] = {
     "newton": Newton,
@@ -95,4 +122,6 @@ KINDS: dict[str, Any] = {
     "section": SectionMesh,
     "clamp": Clamp,
     "slack": Slack,
+    "cell": CellMesh,
+    "spread": Spread,
 }

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.cell import Box
 from solver import freefem
 from solver.case import Case
-from solver.effects import End
+from solver.effects import End, Twist
 from solver.load_path import Waypoint
 from solver.record import VARIABLES, Solution, unreached
 from solver.status import CaseStatus, StateStatus, case_status, state_status
@@ -101,6 +102,9 @@ def composition(case: Case) -> str:
     files = [f"threads_{threads}.idp"]
     if case.model == "solid":
         files.append(f"ends_{case.effects.end}.idp")
+    if case.model == "cell":
+        layers = case.effects.layers if case.muscle.braid else "none"
+        files.append(f"cell_layers_{layers}.idp")
     return "".join(f'include "{name}"\n' for name in files)
 
 
@@ -158,7 +162,23 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
                 "clamp_thread_stiffness": clamp.thread_stiffness,
                 "clamp_inner_stiffness": clamp.inner_stiffness,
             }
+    if case.model == "cell":
+        values |= _cell_flags(case)
     return {k: v if isinstance(v, str | int) else float(v) for k, v in values.items()}
+
+
+def _cell_flags(case: Case) -> dict[str, str | float]:
+    """Flags of solver/edp/cell_parameters.idp."""
+    box = Box(case.muscle)
+    return {
+        "kappa": case.rubber.kappa,
+        "mean_radius": box.mean_radius,
+        "sectors": box.sectors,
+        "axial_spacing": box.spacing,
+        "cell_length": box.spacing * case.numerics.cell.repeats,
+        "thread_radius": case.numerics.spread.radius_of(case.thread) if case.thread else 1.0,
+        "twist_free": int(case.effects.twist is Twist.FREE),
+    }
 
 
 def _collect(

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from geometry import meridian, section
+from geometry import cell, meridian, section
 from geometry.muscle import Braid, Muscle
 from solver import freefem
 from solver.case import Case, digest
@@ -84,10 +84,13 @@ def mesh_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Case], Path |
         if spec is None:
             return None
         kind = json.loads(spec)["kind"]
-        path = folder / f"{digest(spec)}{'.mesh' if kind == 'meridian' else '.msh'}"
+        path = folder / f"{digest(spec)}{'.msh' if kind == 'section' else '.mesh'}"
         if not path.exists():
             if kind == "meridian":
                 meridian.write(case.muscle, case.numerics.meridian, path)
+            elif kind == "cell":
+                radius = json.loads(spec)["thread_radius"]
+                cell.write(case.muscle, case.numerics.cell, radius, path)
             else:
                 section.write(case.muscle, case.numerics.section, case.effects.end, path)
         return path

@@ -18,7 +18,7 @@ from workflow.schema import HELD_KEY, SWEPT_KEY, Scene
 
 FIELDS = {"stress", "deformed_shape"}
 ZERO_FORCE = {"threshold_pressure", "free_contraction"}
-SUFFIX = {"membrane": "mesh", "solid": "msh", "cell": "msh"}  # of the mesh file, by model
+SUFFIX = {"membrane": "mesh", "solid": "msh", "cell": "mesh"}  # of the mesh file, by model
 
 
 @dataclass(frozen=True, order=True)

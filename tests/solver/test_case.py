@@ -13,7 +13,7 @@ from solver.load_path import LoadPath
 from solver.material import MooneyRivlin
 from solver.refusal import UnsolvableCase
 
-MESHED = ("membrane", "solid")
+MESHED = ("membrane", "solid", "cell")
 BUILT = ("cylinder", *MESHED)
 
 # Every number and switch of a case, a changed value, and the models that read it.
@@ -27,7 +27,7 @@ FACTORS = {
     "muscle.braid.layer_diameters": ((20.6, 21.9), MODELS),
     "rubber.c10": (0.4, BUILT),
     "rubber.c01": (0.1, BUILT),
-    "rubber.kappa": (2000.0, ("solid",)),
+    "rubber.kappa": (2000.0, ("solid", "cell")),
     "thread.stiffness": (600.0, BUILT),
     "path.kind": ("isometric", MODELS),
     "path.held": (0.2, MODELS),
@@ -35,6 +35,8 @@ FACTORS = {
     "path.zero_force": (True, MODELS),
     "effects.end": ("sliding", ("solid",)),
     "effects.threads": ("two_way", BUILT),
+    "effects.layers": ("smeared", ("cell",)),
+    "effects.twist": ("free", ("cell",)),
     "fields_at": ((0.1,), MESHED),
     "numerics.newton.tolerance": (1e-8, MESHED),
     "numerics.newton.iterations": (20, MESHED),
@@ -53,6 +55,13 @@ FACTORS = {
     "numerics.clamp.inner_stiffness": (10.0, ("solid",)),
     "numerics.slack.width": (2e-3, BUILT),
     "numerics.slack.stiffness": (100.0, BUILT),
+    "numerics.cell.thread_size": (0.9, ("cell",)),
+    "numerics.cell.body_size": (0.2, ("cell",)),
+    "numerics.cell.growth": (0.4, ("cell",)),
+    "numerics.cell.refinement": (2, ("cell",)),
+    "numerics.cell.repeats": (2, ("cell",)),
+    "numerics.spread.radius": (0.6, ("cell",)),
+    "numerics.spread.modulus": (2000.0, ("cell",)),
 }
 
 
@@ -133,7 +142,7 @@ def test_two_way_threads_do_not_slacken(make_case, model):
 def test_a_bare_tube_has_no_threads(make_case, bare_tube, model):
     bare = make_case(model=model, muscle=bare_tube)
     assert "thread" not in json.loads(bare.canonical())
-    for factor in ("effects.threads", "numerics.slack.width"):
+    for factor in ("effects.threads", "effects.layers", "numerics.slack.width"):
         assert changed(bare, factor.split("."), FACTORS[factor][0]).key == bare.key
 
 
@@ -203,19 +212,24 @@ def test_round_trip_of_a_bare_tube(make_case, bare_tube, model):
 # --- the mesh -------------------------------------------------------------------------------------
 
 SHAPES_NO_MESH = [
-    "muscle.braid.lead",
-    "muscle.braid.threads",
     "rubber.c10",
-    "thread.stiffness",
     "path.held",
     "effects.threads",
     "numerics.newton.tolerance",
     "numerics.clamp.ramp",
 ]
+SHAPES_NO_HALF_MUSCLE = ["muscle.braid.lead", "muscle.braid.threads", "thread.stiffness"]
+SHAPES_NO_CELL = ["muscle.length", "effects.layers", "effects.twist"]
 
 
-@pytest.mark.parametrize("factor", SHAPES_NO_MESH)
-@pytest.mark.parametrize("model", MESHED)
+@pytest.mark.parametrize(
+    ("model", "factor"),
+    [
+        *((model, factor) for model in MESHED for factor in SHAPES_NO_MESH),
+        *((model, factor) for model in MESHED[:2] for factor in SHAPES_NO_HALF_MUSCLE),
+        *(("cell", factor) for factor in SHAPES_NO_CELL),
+    ],
+)
 def test_muscles_share_a_mesh(curve, model, factor):
     other = changed(curve(model), factor.split("."), FACTORS[factor][0])
     assert other.key != curve(model).key or model not in FACTORS[factor][1]
@@ -233,6 +247,10 @@ def test_muscles_share_a_mesh(curve, model, factor):
         ("solid", "muscle.braid.layer_diameters"),
         ("solid", "effects.end"),
         ("solid", "numerics.section.rows"),
+        ("cell", "muscle.braid.lead"),
+        ("cell", "muscle.braid.threads"),
+        ("cell", "thread.stiffness"),
+        ("cell", "numerics.cell.thread_size"),
     ],
 )
 def test_meshes_differ_where_they_must(curve, model, factor):

@@ -14,7 +14,7 @@ from solver.solve import composition, flags
 
 REQUIRED = re.compile(r'^[^/\n]*require(?:Real|Int|String)\("-(\w+)"\)', re.M)
 INCLUDE = re.compile(r'^\s*include\s+"([\w.]+)"', re.M)
-MESHED = ("membrane", "solid")
+MESHED = ("membrane", "solid", "cell")
 
 
 def sources(name: str, composed: str) -> str:
@@ -47,6 +47,7 @@ def test_every_effect_has_its_include(make_case, model, effects):
     files = INCLUDE.findall(composition(case))
     expected = [f"threads_{effects.threads}.idp"]
     expected += [f"ends_{effects.end}.idp"] if model == "solid" else []
+    expected += [f"cell_layers_{effects.layers}.idp"] if model == "cell" else []
     assert files == expected
     assert all((EDP / file).exists() for file in files)
 
@@ -100,6 +101,8 @@ def test_each_model_says_which_variables_it_has(solve_case, make_case, model):
         "cylinder": {
             "volume",
             "energy",
+            "bulge",
+            "twist",
             "stiffness",
             "unstable_modes",
             "residual",
@@ -108,6 +111,7 @@ def test_each_model_says_which_variables_it_has(solve_case, make_case, model):
         },
         "membrane": set(),
         "solid": set(),
+        "cell": set(),
     }
     states = solve_case(make_case(model=model)).states
     assert {name for name in VARIABLES if states[name][0] != states[name][0]} == absent[model]

@@ -64,5 +64,5 @@ def test_stiff_threads_slacken_over_a_narrower_strain():
 
 def test_every_setting_belongs_to_a_model_or_an_effect():
     of_models = {name for names in NUMERICS_OF_MODEL.values() for name in names}
-    of_effects = {"clamp", "slack"}
+    of_effects = {"clamp", "slack", "spread"}
     assert of_models | of_effects == set(KINDS) == set(vars(Numerics()))

@@ -100,6 +100,7 @@ def spec_of_mesh(wildcards):
 # Of all sources of the solver, those that only one model reads.
 MODEL_SOURCES = {model: sources(f"solver/{model}.py", f"solver/edp/{model}*") for model in MODELS}
 MODEL_SOURCES["solid"] += sources("solver/edp/ends_*")
+MODEL_SOURCES["cell"] += sources("geometry/cell.py")
 
 
 def solver_sources(wildcards):
@@ -109,7 +110,8 @@ def solver_sources(wildcards):
     others = [
         f for model, files in MODEL_SOURCES.items() if model != case.case.model for f in files
     ]
-    return sources("solver/*.py", "geometry/muscle.py", "geometry/refusal.py", *edp, without=others)
+    geometry = ["geometry/muscle.py", "geometry/refusal.py", "geometry/cell.py"]
+    return sources("solver/*.py", *geometry, *edp, without=others)
 
 
 def figures():

@@ -2,7 +2,7 @@
 # Muscle -> the whole muscle in three dimensions, for other programs.
 #
 #   in   what shapes the mesh, from the plan; geometry/
-#   out  results/meshes/<digest>.mesh    curve mesh of the membrane
+#   out  results/meshes/<digest>.mesh    curve mesh of the membrane, periodic cell of the braid
 #        results/meshes/<digest>.msh     wall section of the solid
 #        (an empty file where meshing failed: the solve makes it the status mesh_failed)
 #        results/muscles/<muscle>.step   tube, caps and threads, of muscles that a scene shows
