@@ -130,6 +130,7 @@ def project(tmp_path_factory):
     made = Project(tmp_path_factory.mktemp("project") / "a folder with 'quotes'")
     status, output = made.run()
     assert status == 0, output
+    made.said = output
     return made
 
 
@@ -157,6 +158,15 @@ def test_everything_is_there_and_nothing_runs_again(project):
     assert len((results / "tables/failures.csv").read_text().splitlines()) == 1
     assert len(list(results.glob("cases/*.h5"))) == 5
     assert project.planned() == set()
+
+
+def test_the_run_said_how_it_went(project):
+    assert "5 of 5 cases solved, 0 failed" in project.said
+    assert "5 of 5 cases solved" in project.read("results/logs/progress.log")
+    own = next((project.folder / ".snakemake/log").iterdir()).read_text()
+    for chatter in ("Solving one solid isobaric 0.2 MPa", "Finished jobid"):
+        assert chatter in own  # in Snakemake's log
+    assert "Finished jobid" not in project.said
 
 
 def test_nothing_runs_after_what_means_nothing(project, edited):

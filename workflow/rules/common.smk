@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 from solver.case import MODELS
-from workflow import run_lock, studies
+from workflow import studies
 from workflow.config import load
 from workflow.figure import drawn
 from workflow.plan import plan
@@ -45,10 +45,6 @@ wildcard_constraints:
     mesh=r"[0-9a-f]{16}\.(mesh|msh)",
     muscle="|".join(map(re.escape, PLAN.shown)) or "none",
     figure="|".join(map(re.escape, filter(drawn, PLAN.study.scenes))) or "none",
-
-
-onstart:
-    run_lock.take(Path(".snakemake/run.lock"))
 
 
 def sources(*patterns, without=()):

@@ -1,0 +1,49 @@
+# What goes on around the jobs of a run: one run at a time, FreeFEM looked at before anything is
+# solved, and how far it is. No rules in this file.
+#
+#   out  results/logs/progress.log
+from snakemake.logging import logger
+from snakemake.settings.enums import Quietness
+
+from workflow import run_lock
+from workflow.progress import Progress, is_no_chatter
+
+PROGRESS = []  # of the run that goes on
+
+
+def solves(jobs):
+    """Cases that jobs solve, by key."""
+    return {
+        job.wildcards.case: case_of(job.wildcards.case) for job in jobs if job.rule.name == "solve"
+    }
+
+
+def follow():
+    """Show how the run goes instead of what Snakemake says of every job."""
+    quiet = {Quietness.ALL, Quietness.PROGRESS}.intersection(workflow.output_settings.quiet or ())
+    cases = {key: asked.case.model for key, asked in solves(workflow.dag.jobs).items()}
+    progress = Progress(
+        cases,
+        solves(workflow.dag.needrun_jobs()),
+        cores=workflow.cores or 1,
+        log=Path("results/logs/progress.log"),
+        terminal=None if quiet else sys.stderr,
+    )
+    logger.addHandler(progress)
+    PROGRESS.append(progress)
+    for handler in logger.handlers:
+        if handler.name == "DefaultStreamHandler":
+            handler.addFilter(is_no_chatter)
+
+
+onstart:
+    run_lock.take(Path(".snakemake/run.lock"))
+    follow()
+
+
+onsuccess:
+    PROGRESS.pop().close()
+
+
+onerror:
+    PROGRESS.pop().close()
