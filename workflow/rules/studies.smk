@@ -15,6 +15,7 @@ for study_name, study_figures in studies.FIGURES.items():
                 "workflow/*.py",
                 "workflow/figures/style.py",
                 f"workflow/studies/{study_name}*.py",
+                f"workflow/{study_name}/*.py",
                 "workflow/studies/__init__.py",
             ),
         output:

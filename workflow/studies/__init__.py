@@ -24,7 +24,7 @@ from workflow.aside import aside
 from workflow.config import load
 from workflow.plan import mesh_file
 
-FIGURES = {"robustness": ("robustness", "robustness_worst")}
+FIGURES = {"robustness": ("robustness", "robustness_worst"), "claims": ()}
 
 
 @dataclass(frozen=True)
