@@ -90,8 +90,8 @@ def growing_areas(data: Data) -> Finding:
 def _at_pressures(data: Data, quantity: str) -> Array:
     try:
         curve: xr.DataArray = data.tree["stress"].to_dataset()[quantity]
-        curve = curve.sel(muscle=MUSCLE, variant="default", contraction=CONTRACTION)
-        curve = curve.sel(model="solid")  # the only one that has it
+        # one model and one variant, that of the scene which asks for the stress
+        curve = curve.sel(muscle=MUSCLE, contraction=CONTRACTION).isel(model=0, variant=0)
     except KeyError:
         raise Missing("the dataset has no stress of these states") from None
     return values(curve, pressure=PRESSURES)

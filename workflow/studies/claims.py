@@ -63,8 +63,9 @@ def _with_stiffness(study: Study, stiffness: float, own: bool) -> Iterator[Place
     changed = study if own else _stiffened(study, stiffness)
     for planned in plan(changed).cases.values():
         for place in planned.places:
-            swept = place.model in (GEOMETRIC, SWEPT_MODEL) or planned.case.fields_at
-            if place.variant == "default" and (own or swept):
+            stress = bool(planned.case.fields_at)
+            swept = place.model in (GEOMETRIC, SWEPT_MODEL) or stress
+            if (own or swept) and (place.variant == "default" or stress):
                 yield PlacedCase(
                     planned.case,
                     f"{place}, EA {stiffness:g} N",
