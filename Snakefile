@@ -15,6 +15,7 @@ include: "workflow/rules/solve.smk"
 include: "workflow/rules/gather.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/verdict.smk"
+include: "workflow/rules/fields.smk"
 include: "workflow/rules/studies.smk"
 
 
@@ -24,6 +25,7 @@ rule all:
         figures(),
         map(record_of, PLAN.cases),  # else one that was deleted would not be missed
         expand("results/muscles/{muscle}.step", muscle=PLAN.shown),
+        expand("results/fields/{file}", file=FIELD_FILES),
         "results/dataset.nc",
         deviations(),
         "results/complete.txt",

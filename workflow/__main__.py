@@ -46,6 +46,10 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--dataset", type=Path, default=DATASET)
     entry.add_argument("--muscles", nargs="+", required=True, help="those the maps are of")
     entry.add_argument("--table", type=Path, required=True)
+    entry = add(_fields, "Write the fields of a recorded state for ParaView.", study=False)
+    entry.add_argument("--record", type=Path, required=True)
+    entry.add_argument("--state", type=int, required=True, help="number of the stop, from 0")
+    entry.add_argument("--output", type=Path, required=True, help=".vtu")
     add(_explain, "Say which cases the scenes ask for, and which they share.")
     add(_cases, "List the cases: key, status of the record, label.")
     entry = add(_study, "Write the table and the figures of a study of the models.")
@@ -92,6 +96,13 @@ def _deviation(given: argparse.Namespace) -> int:
         rows = deviation.table(tree, given.muscles)
     with aside(given.table) as beside:
         rows.to_csv(beside, index=False, float_format="%.6g")
+    return 0
+
+
+def _fields(given: argparse.Namespace) -> int:
+    from workflow import paraview
+
+    paraview.write(given.record, given.state, given.output)
     return 0
 
 

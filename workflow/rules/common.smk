@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 from solver.case import MODELS
-from workflow import studies
+from workflow import paraview, studies
 from workflow.config import load
 from workflow.figure import drawn
 from workflow.plan import plan
@@ -30,6 +30,9 @@ except StudyError as error:
     sys.exit(str(error))  # the message and no traceback
 
 
+FIELD_FILES = paraview.files(PLAN)
+
+
 class Label:
     """What a user calls a case, in messages: ``{LABEL:key}``. A parameter would be a reason to rerun."""
 
@@ -42,6 +45,7 @@ LABEL = Label()
 
 wildcard_constraints:
     case="[0-9a-f]{16}",
+    file=r"[^/]+\.vtu",
     mesh=r"[0-9a-f]{16}\.(mesh|msh)",
     muscle="|".join(map(re.escape, PLAN.shown)) or "none",
     figure="|".join(map(re.escape, filter(drawn, PLAN.study.scenes))) or "none",

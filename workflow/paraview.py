@@ -1,0 +1,89 @@
+"""Fields of a record as a VTU file, which ParaView opens.
+
+Points are reference positions (R, Z, 0) in mm with the displacement as a vector, so "Warp By
+Vector" shows the deformed wall; a solid has Cauchy stress and principal stresses in MPa at the
+corners of each triangle (no two triangles share a point, since stress is discontinuous).
+"""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver import record
+from workflow.aside import aside
+from workflow.plan import Plan
+from workflow.study_error import StudyError
+
+MODELS = ("membrane", "solid")
+COMPONENTS = ("rr", "rz", "zz", "tt")
+
+
+def files(plan: Plan) -> dict[str, tuple[str, int]]:
+    """File name -> case and state, for all fields that the scenes of a study ask for."""
+    found = {}
+    for places in plan.scenes.values():
+        for place, key in places.items():
+            case = plan.cases[key].case
+            if case.model not in MODELS:
+                continue
+            for stop in case.fields_at:
+                names = (place.muscle, place.model, place.variant, place.group)
+                file = "_".join([*names, f"{place.held:g}", f"{stop:g}"])
+                found[f"{file}.vtu"] = (key, case.path.stops.index(stop))
+    return found
+
+
+def write(path: Path, state: int, output: Path) -> None:
+    """Write the fields of one state of a record, whole or not at all.
+
+    A state that was not reached becomes an empty file, as its case says why.
+
+    Raises
+    ------
+    StudyError
+        If the record cannot be read.
+    """
+    import meshio
+
+    try:
+        solution = record.read(path)[1]
+    except record.NoRecord as error:
+        raise StudyError(str(error)) from None
+    fields = solution.fields.get(state)
+    with aside(output) as beside:
+        if fields is None:
+            beside.touch()
+            return
+        points, cells, data = _line(fields) if "meridian" in fields else _wall(fields)
+        meshio.Mesh(points, cells, point_data=data).write(beside, file_format="vtu")
+
+
+Parts = tuple[NDArray[np.float64], dict[str, NDArray[np.int64]], dict[str, NDArray[np.float64]]]
+
+
+def _line(fields: dict[str, NDArray[np.float64]]) -> Parts:
+    points, displacement = _places(fields["meridian"])
+    nodes = np.arange(len(points))
+    return (
+        points,
+        {"line": np.column_stack([nodes[:-1], nodes[1:]])},
+        {"displacement": displacement},
+    )
+
+
+def _wall(fields: dict[str, NDArray[np.float64]]) -> Parts:
+    from workflow.figures.stress import principal
+
+    points, displacement = _places(fields["corners"])
+    largest, smallest = principal(fields["stress"])
+    data = {"displacement": displacement}
+    data |= {f"stress_{c}": fields["stress"][:, k] for k, c in enumerate(COMPONENTS)}
+    data |= {"largest_principal_stress": largest, "smallest_principal_stress": smallest}
+    return points, {"triangle": np.arange(len(points)).reshape(-1, 3)}, data
+
+
+def _places(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points and displacements of rows R, Z, r, z, with a third component of zero."""
+    zero = np.zeros((len(rows), 1))
+    return np.hstack([rows[:, :2], zero]), np.hstack([rows[:, 2:] - rows[:, :2], zero])
