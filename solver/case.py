@@ -12,7 +12,17 @@ from typing import Any
 
 from geometry.muscle import Muscle
 from geometry.refusal import build
-from solver.effects import Effects, End, ThreadLaw
+from solver.effects import (
+    Effects,
+    End,
+    Rubber,
+    Stretch,
+    ThreadLaw,
+    Volume,
+    active,
+    check_carried,
+    switches,
+)
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin, Thread
 from solver.numerics import KINDS, NUMERICS_OF_MODEL, Numerics
@@ -22,6 +32,8 @@ MODELS = tuple(NUMERICS_OF_MODEL)
 MESHED = {"membrane": "meridian", "solid": "section", "cell": "cell"}
 WITH_KAPPA = {"solid", "cell"}  # the others are incompressible
 INCOMPRESSIBLE = {"kappa": 1e300}
+ANY_RUBBER = {"c10": 1, "c01": 0} | INCOMPRESSIBLE
+ANY_THREAD = {"stiffness": 1}
 UNREAD: dict[str, dict[str, dict[str, float]]] = {  # by model, what it leaves out of the identity
     "geometric": {"muscle": {"wall_thickness": 1e9, "length": 1.0}},
     "cylinder": {"muscle": {"length": 1.0}, "rubber": INCOMPRESSIBLE},
@@ -59,6 +71,9 @@ class Case:
             raise UnsolvableCase("thread", None, "a thread, as the muscle has a braid")
         if self.muscle.braid is None and self.model == "geometric":
             raise UnsolvableCase("model", self.model, "another model: Eq. (1) needs a braid")
+        check_carried(self.model, self.effects)
+        if self.muscle.braid is None and self.effects.rubber is Rubber.NONE:
+            raise UnsolvableCase("rubber", self.effects.rubber, "elastic in a bare tube")
         if not isinstance(self.fields_at, tuple):
             raise UnsolvableCase("fields_at", self.fields_at, "a list of stops of the path")
         for stop in self.fields_at:
@@ -81,31 +96,42 @@ class Case:
         if self.model == "geometric":
             del muscle["wall_thickness"], muscle["length"]
             return values
-        values["rubber"] = asdict(self.rubber)
-        if self.muscle.braid is not None:
+        braided = self.muscle.braid is not None
+        read = switches(self.model, braided=braided)
+        values["effects"] = {name: getattr(self.effects, name) for name in read}
+        if self.effects.rubber is Rubber.ELASTIC:
+            values["rubber"] = asdict(self.rubber)
+            if not self.compressible:
+                del values["rubber"]["kappa"]
+        if braided and self.effects.stretch is Stretch.ELASTIC:
             assert self.thread is not None  # see __post_init__
             values["thread"] = asdict(self.thread)
-            values["effects"] = {"threads": self.effects.threads}
-        else:
-            values["effects"] = {}
-        if self.model == "solid":
-            values["effects"]["end"] = self.effects.end
-        if self.model == "cell":
-            values["effects"]["twist"] = self.effects.twist
-            if self.muscle.braid is not None:
-                values["effects"]["layers"] = self.effects.layers
-        if self.model not in WITH_KAPPA:
-            del values["rubber"]["kappa"]
         if self.model == "cylinder":
             del muscle["length"]
-        slackens = self.muscle.braid is not None and self.effects.threads is ThreadLaw.TENSION_ONLY
-        numerics = [*NUMERICS_OF_MODEL[self.model]]
-        numerics += ["clamp"] * clamped + ["slack"] * slackens
-        numerics += ["spread"] * (self.model == "cell" and self.muscle.braid is not None)
-        values["numerics"] = {name: asdict(getattr(self.numerics, name)) for name in numerics}
+        values["numerics"] = {name: asdict(getattr(self.numerics, name)) for name in self._read()}
         if self.fields_at:
             values["fields_at"] = self.fields_at
         return values
+
+    @property
+    def active_effects(self) -> list[str]:
+        """Names of the effects that are on (solver/effects.py)."""
+        return active(self.model, self.effects, braided=self.muscle.braid is not None)
+
+    @property
+    def compressible(self) -> bool:
+        """Whether the bulk modulus matters."""
+        return self.model in WITH_KAPPA and self.effects.volume is Volume.COMPRESSIBLE
+
+    def _read(self) -> list[str]:
+        """The numerics that model and effects read."""
+        effects, braided = self.effects, self.muscle.braid is not None
+        names = [*NUMERICS_OF_MODEL[self.model]]
+        names += ["clamp"] * (self.model == "solid" and effects.end is End.CLAMP)
+        slackens = effects.threads is ThreadLaw.TENSION_ONLY and effects.stretch is Stretch.ELASTIC
+        names += ["slack"] * (braided and slackens)
+        names += ["spread"] * (braided and self.model == "cell")
+        return names
 
     def canonical(self) -> str:
         """Canonical JSON: sorted keys, shortest decimals, 20 for 20.0."""
@@ -185,8 +211,13 @@ def _filled(values: object) -> dict[str, Any]:
     if model not in MODELS:
         raise UnsolvableCase("model", model, ", ".join(MODELS))
     given: dict[str, Any] = {"effects": {}, "numerics": {}, "fields_at": ()} | dict(values)
-    if model == "geometric":
-        given = {"rubber": {"c10": 1, "c01": 0}, "thread": {"stiffness": 1}} | given
+    effects = given["effects"] if isinstance(given["effects"], Mapping) else {}
+    if model == "geometric" or effects.get("rubber") == Rubber.NONE:
+        given = {"rubber": ANY_RUBBER} | given
+    if model == "geometric" or effects.get("stretch") == Stretch.RIGID:
+        given = {"thread": ANY_THREAD} | given
+    if effects.get("volume") == Volume.INCOMPRESSIBLE and isinstance(given.get("rubber"), Mapping):
+        given["rubber"] = {**INCOMPRESSIBLE, **given["rubber"]}
     for part, unread in UNREAD.get(model, {}).items():
         if isinstance(given.get(part), Mapping):
             given[part] = {**unread, **given[part]}

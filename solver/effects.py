@@ -1,23 +1,28 @@
-"""The effects a case may carry, and which model carries which."""
+"""Effects: what a case may contain, what each adds to the energy, and its switch.
 
-from dataclasses import dataclass, field
+One list, ``EFFECTS``. A model carries some of them; a few of those can be switched off in it. What
+is off is absent from the solve: no unknowns, no terms. In FreeFEM each alternative is an include
+of its own, and a program is composed of those that are on (solver/solve.py).
+"""
+
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 
 from solver.refusal import UnsolvableCase
 
 
 class End(StrEnum):
-    """How the tube ends at the cap."""
+    """How the tube is held at the cap in the solid model."""
 
-    CLAMP = "clamp"  # held gradually inside the fitting: stays valid
-    BUTT = "butt"  # end face bonded: simple, singular at its corners
-    SLIDING = "sliding"  # free to widen: a piece of an infinite tube
+    CLAMP = "clamp"  # runs on into the fitting and is held there gradually
+    BUTT = "butt"  # end face fixed: the paper's, singular at its corners
+    SLIDING = "sliding"  # plane, free to widen: a piece of an infinite tube
 
 
 class ThreadLaw(StrEnum):
-    """What a thread does when it is pushed."""
+    """Whether threads push back when shortened."""
 
-    TENSION_ONLY = "tension_only"  # slackens
+    TENSION_ONLY = "tension_only"  # slackens instead, as yarns do
     TWO_WAY = "two_way"  # pushes back: the paper's
 
 
@@ -30,10 +35,38 @@ class Layers(StrEnum):
 
 
 class Twist(StrEnum):
-    """Whether the ends of a muscle may turn against each other, in the model ``cell``."""
+    """Whether the ends of a muscle may turn against each other."""
 
-    HELD = "held"  # no twist
-    FREE = "free"  # no torque
+    HELD = "held"  # no twist; its torque is an output
+    FREE = "free"  # no torque; its twist is an output
+
+
+class Wall(StrEnum):
+    """Where through the wall rubber, threads and pressure lie."""
+
+    INTEGRATED = "integrated"  # each at its own radius
+    ONE_RADIUS = "one_radius"  # all at the mean radius of the layers, or mid-wall of a bare tube
+
+
+class Stretch(StrEnum):
+    """Whether threads become longer under load."""
+
+    ELASTIC = "elastic"  # by EA
+    RIGID = "rigid"  # not at all; they bear tension only, and the net gives the radius
+
+
+class Volume(StrEnum):
+    """Whether the rubber keeps its volume."""
+
+    COMPRESSIBLE = "compressible"  # by its bulk modulus
+    INCOMPRESSIBLE = "incompressible"
+
+
+class Rubber(StrEnum):
+    """Whether the wall resists."""
+
+    ELASTIC = "elastic"
+    NONE = "none"  # pressure on the braid alone
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,15 +77,162 @@ class Effects:
     threads: ThreadLaw = field(default=ThreadLaw.TENSION_ONLY)
     layers: Layers = field(default=Layers.DISCRETE)
     twist: Twist = field(default=Twist.HELD)
+    wall: Wall = field(default=Wall.INTEGRATED)
+    stretch: Stretch = field(default=Stretch.ELASTIC)
+    volume: Volume = field(default=Volume.COMPRESSIBLE)
+    rubber: Rubber = field(default=Rubber.ELASTIC)
 
     def __post_init__(self) -> None:
-        for name, kind in (
-            ("end", End),
-            ("threads", ThreadLaw),
-            ("layers", Layers),
-            ("twist", Twist),
-        ):
-            value = getattr(self, name)
+        for switch in fields(Effects):
+            kind, value = KINDS[switch.name], getattr(self, switch.name)
             if value not in list(kind):
-                raise UnsolvableCase(name, value, ", ".join(kind))
-            object.__setattr__(self, name, kind(value))
+                raise UnsolvableCase(switch.name, value, ", ".join(kind))
+            object.__setattr__(self, switch.name, kind(value))
+        if self.stretch is Stretch.RIGID:
+            if self.threads is ThreadLaw.TWO_WAY:
+                allowed = "elastic with two_way threads: two rigid layers that push lock the wall"
+                raise UnsolvableCase("stretch", self.stretch, allowed)
+            if self.twist is Twist.FREE:
+                raise UnsolvableCase("stretch", self.stretch, "elastic where twist is free")
+
+
+KINDS: dict[str, type[StrEnum]] = {
+    "end": End,
+    "threads": ThreadLaw,
+    "layers": Layers,
+    "twist": Twist,
+    "wall": Wall,
+    "stretch": Stretch,
+    "volume": Volume,
+    "rubber": Rubber,
+}
+READ_BY = {  # models that read a switch; others have what their entry in EFFECTS says
+    "end": ("solid",),
+    "threads": ("cylinder", "membrane", "solid", "cell"),
+    "layers": ("cell",),
+    "twist": ("cylinder", "cell"),
+    "wall": ("cylinder", "membrane"),
+    "stretch": ("cylinder",),
+    "volume": ("solid",),
+    "rubber": ("cylinder",),
+}
+OF_BRAID = ("threads", "layers", "stretch")  # switches that a bare tube does not read
+# Choices among ways to have an effect: a variant may make them for all models, and those that do
+# not resolve the effect go without. Any other switch is refused where it would change nothing.
+CHOICES = ("end", "threads", "layers")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effect:
+    """One effect of the vocabulary.
+
+    Attributes
+    ----------
+    energy : what it adds to the energy
+    models : those that carry it
+    switch : field of Effects by which some of them leave it out; empty if the model decides
+    off : values of the switch that leave it out
+    """
+
+    energy: str
+    models: tuple[str, ...]
+    switch: str = ""
+    off: tuple[str, ...] = ()
+    braid: bool = False  # only muscles with a braid have it
+
+
+WITH_RUBBER = ("cylinder", "membrane", "solid", "cell")
+EFFECTS = {
+    "rubber": Effect(
+        energy="C10 (I1 - 3) + C01 (I2 - 3) of the wall",
+        models=WITH_RUBBER,
+        switch="rubber",
+        off=(Rubber.NONE,),
+    ),
+    "wall_thickness": Effect(
+        energy="rubber, threads and pressure each at their own radius, not all at one",
+        models=WITH_RUBBER,
+        switch="wall",
+        off=(Wall.ONE_RADIUS,),
+    ),
+    "thread_stretch": Effect(
+        energy="EA (lf - 1)^2 / 2 of the threads, in place of lf <= 1",
+        models=WITH_RUBBER,
+        switch="stretch",
+        off=(Stretch.RIGID,),
+        braid=True,
+    ),
+    "slackening": Effect(
+        energy="no energy of threads that are shortened",
+        models=WITH_RUBBER,
+        switch="threads",
+        off=(ThreadLaw.TWO_WAY,),
+        braid=True,
+    ),
+    "end_caps": Effect(
+        energy="the same energy of a wall that is held to its first radius at the caps",
+        models=("membrane", "solid"),
+        switch="end",
+        off=(End.SLIDING,),
+    ),
+    "cap_geometry": Effect(
+        energy="bending and shear of the wall, and the springs of the fitting",
+        models=("solid",),
+        switch="end",
+        off=(End.SLIDING,),
+    ),
+    "twist": Effect(
+        energy="shear r tau of the wall, and threads turned by R tau",
+        models=("cylinder", "cell"),
+        switch="twist",
+        off=(Twist.HELD,),
+    ),
+    "compressibility": Effect(
+        energy="- P^2 / (2 kappa)",
+        models=("solid", "cell"),
+        switch="volume",
+        off=(Volume.INCOMPRESSIBLE,),
+    ),
+    "discrete_threads": Effect(
+        energy="that of the threads on single lines, not spread over their layer",
+        models=("cell",),
+        switch="layers",
+        off=(Layers.SMEARED,),
+        braid=True,
+    ),
+}
+
+
+def switches(model: str, *, braided: bool) -> list[str]:
+    """The switches that a model reads."""
+    return [s for s in KINDS if model in READ_BY[s] and (braided or s not in OF_BRAID)]
+
+
+def active(model: str, effects: Effects, *, braided: bool) -> list[str]:
+    """Names of the effects that are on."""
+    return [
+        name
+        for name, effect in EFFECTS.items()
+        if model in effect.models
+        and (braided or not effect.braid)
+        and not (
+            effect.switch
+            and model in READ_BY[effect.switch]
+            and getattr(effects, effect.switch) in effect.off
+        )
+    ]
+
+
+def check_carried(model: str, effects: Effects) -> None:
+    """Refuse a switch that was moved and that the model does not read.
+
+    Raises
+    ------
+    UnsolvableCase
+        Naming the models that carry it.
+    """
+    for name in KINDS.keys() - CHOICES:
+        value, default = getattr(effects, name), getattr(Effects(), name)
+        if value is not default and model not in READ_BY[name]:
+            allowed = f"{default} with {model}; {value} with {', '.join(READ_BY[name])}"
+            raise UnsolvableCase(name, value, allowed)

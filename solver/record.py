@@ -3,7 +3,8 @@
 Layout, version 1
 -----------------
 /            attrs: filetype "muscle-case", layout, key, case (canonical JSON, solver/case.py),
-             code (digest of the sources that solved it), status, reason, log (its end, if failed)
+             code (digest of the sources that solved it), status, reason, log (its end, if failed),
+             effects (names of those that are on), unknowns (beside contraction and pressure)
 /parameters  one scalar dataset per number of the case, in groups as in the JSON;
              attrs: units
 /states      datasets of shape (state,) as in VARIABLES, attrs: units, long_name; and status.
@@ -43,6 +44,7 @@ VARIABLES = {
     "outer_diameter": ("mm", "largest outer diameter anywhere"),
     "bulge": ("mm", "largest difference of inner radii around the tube"),
     "twist": ("rad/mm", "twist of the muscle per initial length"),
+    "torque": ("N mm", "torque that holds the ends"),
     "equivalent_diameter": ("mm", "equivalent diameter, sign(F) sqrt(4 |F| / (pi p))"),
     "thread_stretch_min": ("1", "smallest thread stretch"),
     "thread_stretch_max": ("1", "largest thread stretch"),
@@ -93,6 +95,7 @@ class Solution:
     states : arrays of shape (state,), as in VARIABLES; NaN where not reached
     fields : state number -> name -> array, as in the layout
     log : end of the solver's output where it failed
+    unknowns : what was solved for beside contraction and pressure; 0 if nothing was solved
     """
 
     status: CaseStatus
@@ -101,6 +104,7 @@ class Solution:
     state_status: list[StateStatus]
     fields: dict[int, dict[str, NDArray[np.float64]]] = field(default_factory=dict)
     log: str = ""
+    unknowns: int = 0
 
 
 def unreached(count: int) -> dict[str, NDArray[np.float64]]:
@@ -124,6 +128,8 @@ def write(path: Path, case: Case, solution: Solution) -> None:
                 status=solution.status.value,
                 reason=solution.reason,
                 log=solution.log,
+                effects=" ".join(case.active_effects),
+                unknowns=solution.unknowns,
             )
             _write_parameters(file.create_group("parameters"), case)
             states = file.create_group("states")
@@ -175,6 +181,7 @@ def _read(file: Any) -> tuple[Case, Solution]:
         status=CaseStatus(file.attrs["status"]),
         reason=file.attrs["reason"],
         log=file.attrs["log"],
+        unknowns=int(file.attrs["unknowns"]),
         states={name: states[name][()] for name in VARIABLES},
         state_status=[StateStatus(s.decode()) for s in states["status"][()]],
         fields={

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from geometry.cell import Box
 from solver import freefem
 from solver.case import Case
-from solver.effects import End, Twist
+from solver.effects import End, Twist, Volume
 from solver.load_path import Waypoint
 from solver.record import VARIABLES, Solution, unreached
 from solver.status import CaseStatus, StateStatus, case_status, state_status
@@ -53,6 +53,7 @@ class _End:
     status: CaseStatus | None
     reason: str
     usage: freefem.Usage | None
+    unknowns: int
 
 
 def _follow(
@@ -78,10 +79,11 @@ def _follow(
         except freefem.FreeFemError as error:
             status, reason = CaseStatus.SOLVER_ERROR, str(error)
         _collect(case, way, work, states, fields)
+        unknowns = _number(work / "unknowns.txt")
         ended = work / "reason.txt"
         if status is None and ended.exists():
             reason = ended.read_text().strip()
-    return _End(status, reason, usage)
+    return _End(status, reason, usage, unknowns)
 
 
 def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solution:
@@ -100,8 +102,10 @@ def composition(case: Case) -> str:
     """The includes of a program: one per active effect."""
     threads = case.effects.threads if case.muscle.braid else "none"
     files = [f"threads_{threads}.idp"]
+    if case.model == "membrane":
+        files.append(f"membrane_wall_{case.effects.wall}.idp")
     if case.model == "solid":
-        files.append(f"ends_{case.effects.end}.idp")
+        files += [f"ends_{case.effects.end}.idp", f"solid_{case.effects.volume}.idp"]
     if case.model == "cell":
         layers = case.effects.layers if case.muscle.braid else "none"
         files.append(f"cell_layers_{layers}.idp")
@@ -154,7 +158,8 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
         "slack_width": slack,
     }
     if case.model == "solid":
-        values["kappa"] = case.rubber.kappa
+        if case.compressible:
+            values["kappa"] = case.rubber.kappa
         if case.effects.end is End.CLAMP:
             clamp = case.numerics.clamp
             values |= {
@@ -202,6 +207,8 @@ def _collect(
     if case.muscle.braid is None:
         for name in ("thread_stretch_min", "thread_stretch_max"):
             states[name][:] = np.nan
+    if case.effects.volume is Volume.INCOMPRESSIBLE:
+        states["unstable_modes"][:] = np.nan  # solid_incompressible.idp counts none
 
 
 def _judge(
@@ -226,6 +233,7 @@ def _judge(
         state_status=each,
         fields=fields,
         log=freefem.tail(log) if end.status else "",
+        unknowns=end.unknowns,
     )
 
 
@@ -240,6 +248,12 @@ def _direct(model: str) -> Callable[[Case], Solution] | None:
 
         return cylinder.solve
     return None
+
+
+def _number(path: Path) -> int:
+    """The number in a file; 0 if FreeFEM did not come to write it."""
+    text = path.read_text().strip() if path.exists() else ""
+    return int(text) if text else 0
 
 
 def _rows(path: Path) -> list[dict[str, float]]:

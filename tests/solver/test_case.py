@@ -8,7 +8,7 @@ import pytest
 from geometry.muscle import Muscle
 from geometry.refusal import Refusal
 from solver.case import MODELS, Case
-from solver.effects import Effects
+from solver.effects import CHOICES, Effects
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin
 from solver.refusal import UnsolvableCase
@@ -36,7 +36,11 @@ FACTORS = {
     "effects.end": ("sliding", ("solid",)),
     "effects.threads": ("two_way", BUILT),
     "effects.layers": ("smeared", ("cell",)),
-    "effects.twist": ("free", ("cell",)),
+    "effects.twist": ("free", ("cylinder", "cell")),
+    "effects.wall": ("one_radius", ("cylinder", "membrane")),
+    "effects.stretch": ("rigid", ("cylinder",)),
+    "effects.volume": ("incompressible", ("solid",)),
+    "effects.rubber": ("none", ("cylinder",)),
     "fields_at": ((0.1,), MESHED),
     "numerics.newton.tolerance": (1e-8, MESHED),
     "numerics.newton.iterations": (20, MESHED),
@@ -115,6 +119,11 @@ def test_key_changes_with_what_the_model_reads(curve, model, factor):
         with pytest.raises(UnsolvableCase, match="no fields"):
             changed(curve(model), [factor], value)
         return
+    refused = factor.startswith("effects.") and factor.removeprefix("effects.") not in CHOICES
+    if refused and model not in readers:
+        with pytest.raises(UnsolvableCase, match=f"{value} with {', '.join(readers)}"):
+            changed(curve(model), factor.split("."), value)
+        return
     other = changed(curve(model), factor.split("."), value)
     if model in readers:
         assert other.key != curve(model).key
@@ -144,6 +153,16 @@ def test_a_bare_tube_has_no_threads(make_case, bare_tube, model):
     assert "thread" not in json.loads(bare.canonical())
     for factor in ("effects.threads", "effects.layers", "numerics.slack.width"):
         assert changed(bare, factor.split("."), FACTORS[factor][0]).key == bare.key
+
+
+def test_what_an_effect_would_read_is_no_part_of_a_case_without_it(make_case):
+    rigid = make_case(model="cylinder", effects=Effects(stretch="rigid"))
+    for factor in ("thread.stiffness", "numerics.slack.width"):
+        assert changed(rigid, factor.split("."), FACTORS[factor][0]).key == rigid.key
+    net = make_case(model="cylinder", effects=Effects(rubber="none"))
+    assert changed(net, ["rubber", "c10"], 0.4).key == net.key
+    solid = make_case(model="solid", effects=Effects(volume="incompressible"))
+    assert changed(solid, ["rubber", "kappa"], 2000.0).key == solid.key
 
 
 # --- canonical JSON -------------------------------------------------------------------------------
@@ -186,6 +205,13 @@ ROUND_TRIPS = {
     "membrane with fields": {"model": "membrane", "fields_at": (0.1,)},
     "solid with fields": {"model": "solid", "fields_at": (0.1,)},
     "solid butt": {"model": "solid", "effects": Effects(end="butt", threads="two_way")},
+    "solid that keeps its volume": {
+        "model": "solid",
+        "effects": Effects(volume="incompressible"),
+        "rubber": MooneyRivlin(c10=80, c01=20, kappa=1e5),
+    },
+    "rigid net": {"model": "cylinder", "effects": Effects(stretch="rigid")},
+    "net alone": {"model": "cylinder", "effects": Effects(stretch="rigid", rubber="none")},
     "isotonic": {"path": LoadPath(kind="isotonic", held=200.0, stops=(0.1, 0.3))},
     "threshold": {"path": LoadPath(kind="isometric", held=0.1, stops=(0.3,), zero_force=True)},
     # stiffer than the default bulk modulus allows, which membrane and cylinder do not read

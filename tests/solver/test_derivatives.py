@@ -45,9 +45,10 @@ def check(found, *, tolerance: float) -> None:
 
 @pytest.mark.parametrize("state", STATES)
 @pytest.mark.parametrize("threads", ["tension_only", "two_way"])
-def test_membrane(make_case, errors, threads, state):
+@pytest.mark.parametrize("wall", ["integrated", "one_radius"])
+def test_membrane(make_case, errors, wall, threads, state):
     found = errors(
-        make_case(model="membrane", effects=Effects(threads=threads)),
+        make_case(model="membrane", effects=Effects(threads=threads, wall=wall)),
         amplitude=0.05,
         multiplier=0.0,
         **state,
@@ -60,6 +61,13 @@ def test_membrane(make_case, errors, threads, state):
 @pytest.mark.parametrize("end", ["clamp", "butt", "sliding"])
 def test_solid(make_case, errors, end, threads, state):
     case = make_case(model="solid", effects=Effects(end=end, threads=threads), numerics=COARSE)
+    check(errors(case, amplitude=0.02, multiplier=0.1, **state), tolerance=1e-6)
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_solid_that_keeps_its_volume(make_case, errors, state):
+    effects = Effects(volume="incompressible")
+    case = make_case(model="solid", effects=effects, numerics=COARSE)
     check(errors(case, amplitude=0.02, multiplier=0.1, **state), tolerance=1e-6)
 
 

@@ -1,10 +1,13 @@
 """The switches of a case and the settings of its solution."""
 
+import itertools
 import math
 
 import pytest
 
-from solver.effects import Effects, End, ThreadLaw
+from solver.case import MODELS
+from solver.effects import EFFECTS, READ_BY, Effects, End, ThreadLaw, active
+from solver.effects import KINDS as SWITCHES
 from solver.material import Thread
 from solver.numerics import KINDS, NUMERICS_OF_MODEL, Clamp, Newton, Numerics, Slack
 from solver.refusal import UnsolvableCase
@@ -66,3 +69,67 @@ def test_every_setting_belongs_to_a_model_or_an_effect():
     of_models = {name for names in NUMERICS_OF_MODEL.values() for name in names}
     of_effects = {"clamp", "slack", "spread"}
     assert of_models | of_effects == set(KINDS) == set(vars(Numerics()))
+
+
+# --- the one list ---------------------------------------------------------------------------------
+
+
+def test_every_switch_belongs_to_effects_and_models_that_carry_them():
+    assert set(SWITCHES) == set(READ_BY) == set(vars(Effects()))
+    assert {effect.switch for effect in EFFECTS.values()} == set(SWITCHES)
+    for effect in EFFECTS.values():
+        assert set(effect.models) <= set(MODELS)
+        assert set(effect.off) < set(SWITCHES[effect.switch])
+        assert set(READ_BY[effect.switch]) & set(effect.models)
+
+
+@pytest.mark.parametrize(
+    ("model", "changes", "off"),
+    [
+        ("cylinder", {"wall": "one_radius"}, {"wall_thickness"}),
+        ("cylinder", {"stretch": "rigid"}, {"thread_stretch"}),
+        ("cylinder", {"rubber": "none"}, {"rubber"}),
+        ("membrane", {"wall": "one_radius"}, {"wall_thickness"}),
+        ("membrane", {"threads": "two_way"}, {"slackening"}),
+        ("solid", {"volume": "incompressible"}, {"compressibility"}),
+        ("solid", {"end": "sliding"}, {"end_caps", "cap_geometry"}),
+        ("solid", {"end": "butt"}, set()),
+        ("cell", {"layers": "smeared"}, {"discrete_threads"}),
+        ("cell", {"layers": "wire"}, set()),
+    ],
+)
+def test_what_a_switch_takes_away(model, changes, off):
+    fullest = active(model, Effects(), braided=True)
+    left = active(model, Effects(**changes), braided=True)
+    assert set(fullest) - set(left) == off
+
+
+def test_twist_is_off_until_asked_for():
+    for model in ("cylinder", "cell"):
+        held, free = (active(model, Effects(twist=t), braided=True) for t in ("held", "free"))
+        assert set(free) - set(held) == {"twist"}
+
+
+def test_the_ladder_adds_effects():
+    ladder = [
+        set(active(model, Effects(), braided=True))
+        for model in ("geometric", "cylinder", "membrane", "solid")
+    ]
+    assert ladder[0] == set()
+    assert all(below < above for below, above in itertools.pairwise(ladder))
+
+
+def test_a_bare_tube_has_no_effects_of_threads():
+    assert set(active("solid", Effects(), braided=False)) == {
+        "rubber",
+        "wall_thickness",
+        "end_caps",
+        "cap_geometry",
+        "compressibility",
+    }
+
+
+@pytest.mark.parametrize("changes", [{"threads": "two_way"}, {"twist": "free"}])
+def test_rigid_threads_neither_push_nor_twist(changes):
+    with pytest.raises(UnsolvableCase, match="elastic"):
+        Effects(stretch="rigid", **changes)

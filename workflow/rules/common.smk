@@ -98,7 +98,7 @@ def spec_of_mesh(wildcards):
 
 
 # Of all sources of the solver, those that only one model reads.
-MODEL_SOURCES = {model: sources(f"solver/{model}.py", f"solver/edp/{model}*") for model in MODELS}
+MODEL_SOURCES = {model: sources(f"solver/{model}*.py", f"solver/edp/{model}*") for model in MODELS}
 MODEL_SOURCES["solid"] += sources("solver/edp/ends_*")
 MODEL_SOURCES["cell"] += sources("geometry/cell.py")
 

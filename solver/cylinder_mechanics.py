@@ -1,0 +1,172 @@
+"""Energy, pressure, force and torque of a uniform cylinder, with the effects of a case.
+
+Incompressible wall: a point R goes to r(R)^2 = r^2 + (R^2 - R_0^2) / lz, with r and R_0 of the
+surface on which the pressure acts, and turns by tau Z. In squared stretches A = lt^2, B = lz^2:
+
+    I1 = A + B + 1/(A B) + A (R tau)^2,   I2 = 1/A + 1/B + A B + (R tau)^2 / B
+    lf^2 = B cos^2 + A (sin + or - R tau cos)^2     + for the inner layer, - for the outer
+
+The energy per reference length psi(r, lz, tau) gives p = psi_r / (2 pi r lz), F = psi_lz - p pi r^2
+and the torque psi_tau. Rigid threads bear tension only: the layer that binds gives r(lz).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from solver import thread_law
+from solver.case import Case
+from solver.effects import Rubber, Stretch, Twist, Wall
+
+Array = NDArray[np.float64]
+WALL_POINTS = 16  # Gauss points through the wall: exact to rounding for any wall that is built
+SLACKEST = 0.2  # share of the net's radius, far below where a slack wall comes to rest
+
+
+@dataclass(frozen=True)
+class State:
+    """A state of the cylinder: shape [mm, 1, rad/mm] and loads [MPa, N, N mm]."""
+
+    r: float
+    lz: float
+    twist: float
+    pressure: float
+    force: float
+    torque: float
+
+
+class Cylinder:
+    """One muscle as a function of the unknowns of its case.
+
+    ``start`` is the unloaded state: the axial stretch; before it the radius, or 1 + the pressure
+    where a rigid net gives the radius; after it the twist where that is free. All without unit.
+    """
+
+    def __init__(self, case: Case) -> None:
+        self.case = case
+        muscle, effects = case.muscle, case.effects
+        self.free = int(effects.twist is Twist.FREE)  # unknowns of the twist
+        self.rigid = effects.stretch is Stretch.RIGID and muscle.braid is not None
+        self.layers = np.array(muscle.layer_radii)
+        self.inner, self.radii, self.measure = _wall(case)
+        if effects.wall is Wall.ONE_RADIUS:
+            self.layers = np.full_like(self.layers, self.inner)
+        if effects.rubber is Rubber.NONE:
+            self.measure = 0 * self.measure
+            self.modulus = 1.0
+        else:
+            self.modulus = case.rubber.c10 + case.rubber.c01
+        lead = muscle.braid.lead if muscle.braid else 1.0
+        self.angles = np.arctan(2 * math.pi * self.layers / lead)
+        self.senses = np.array([1.0, -1.0])[: len(self.layers)]
+        self.start = np.array([1.0, 1.0] + [0.0] * self.free)
+
+    @property
+    def unknowns(self) -> int:
+        """Those that are solved for beside contraction and pressure."""
+        return (not self.rigid) + self.free
+
+    def state(self, x: Array) -> State:
+        """The state at some unknowns."""
+        lz, twist = float(x[1]), float(x[2]) / self.inner if self.free else 0.0
+        if self.rigid:
+            return self._on_net(float(x[0] - 1) * self.modulus, lz)
+        r = float(x[0]) * self.inner
+        by_r, by_lz, torque = self._forces(r, lz, twist, threads=True)
+        pressure = by_r / (2 * math.pi * r * lz)
+        return State(r, lz, twist, pressure, by_lz - pressure * math.pi * r**2, torque)
+
+    def radius_at(self, radius: float, r: float, lz: float) -> float:
+        """Where a reference radius is [mm]."""
+        return math.sqrt(r**2 + (radius**2 - self.inner**2) / lz)
+
+    def thread_stretch(self, state: State) -> Array:
+        """Thread stretch of each layer."""
+        axial, hoop = self._along_threads(state.r, state.lz, state.twist)
+        return np.asarray(np.hypot(axial, hoop))
+
+    def _hoop(self, radii: Array, r: float, lz: float) -> Array:
+        """Hoop stretch at reference radii."""
+        return np.asarray(np.sqrt(r**2 + (radii**2 - self.inner**2) / lz) / radii)
+
+    def _along_threads(self, r: float, lz: float, twist: float) -> tuple[Array, Array]:
+        """Axial and hoop part of the stretch of each layer's threads."""
+        turned = np.sin(self.angles) + self.senses * self.layers * twist * np.cos(self.angles)
+        return lz * np.cos(self.angles), self._hoop(self.layers, r, lz) * turned
+
+    def _forces(
+        self, r: float, lz: float, twist: float, *, threads: bool
+    ) -> tuple[float, float, float]:
+        """Derivatives of psi by r, lz and tau."""
+        c10, c01 = self.case.rubber.c10, self.case.rubber.c01
+        a, b = self._hoop(self.radii, r, lz) ** 2, lz**2
+        radii, shear = self.radii, (self.radii * twist) ** 2
+        by_a = self.measure * (c10 * (1 - 1 / (a**2 * b) + shear) + c01 * (b - 1 / a**2))
+        by_b = self.measure * (c10 * (1 - 1 / (a * b**2)) + c01 * (a - (1 + shear) / b**2))
+        torque = np.sum(self.measure * 2 * radii**2 * twist * (c10 * a + c01 / b))
+        if threads and len(self.layers):
+            axial, hoop = self._along_threads(r, lz, twist)
+            per_square = self._tension(np.hypot(axial, hoop))
+            a_layer = self._hoop(self.layers, r, lz) ** 2
+            by_a = np.append(by_a, per_square * hoop**2 / a_layer)
+            by_b = np.append(by_b, per_square * np.cos(self.angles) ** 2)
+            turning = np.sqrt(a_layer) * self.senses * self.layers * np.cos(self.angles)
+            torque += np.sum(per_square * 2 * hoop * turning)
+            radii = np.append(radii, self.layers)
+        by_r = np.sum(by_a * 2 * r / radii**2)
+        by_lz = np.sum(by_b * 2 * lz - by_a * (radii**2 - self.inner**2) / (lz * radii) ** 2)
+        return float(by_r), float(by_lz), float(torque)
+
+    def _tension(self, stretch: Array) -> Array:
+        """Derivative of each layer's energy by lf^2 [N]."""
+        braid, thread = self.case.muscle.braid, self.case.thread
+        assert braid is not None
+        assert thread is not None
+        width = self.case.numerics.slack.width_of(thread)
+        share = thread_law.tension(self.case.effects.threads, width, stretch)
+        total = braid.threads * thread.stiffness
+        return np.asarray(total * share / (2 * stretch * np.cos(self.angles)))
+
+    def _net(self, lz: float) -> tuple[float, float]:
+        """Radius that the binding layer of a rigid net allows, and its derivative by lz."""
+        cosine, sine = np.cos(self.angles) ** 2, np.sin(self.angles) ** 2
+        offset = self.layers**2 - self.inner**2
+        if not 0 < lz < 1 / math.sqrt(cosine.max()):
+            return math.nan, math.nan
+        square = self.layers**2 * (1 - cosine * lz**2) / sine - offset / lz
+        slope = -2 * self.layers**2 * cosine * lz / sine + offset / lz**2
+        k = int(np.argmin(square))
+        r = math.sqrt(square[k]) if square[k] > 0 else math.nan  # no hole is left
+        return r, float(slope[k]) / (2 * r)
+
+    def _on_net(self, pressure: float, lz: float) -> State:
+        """The state at a pressure and an axial stretch, its threads taut or slack."""
+
+        def outward(r: float) -> float:
+            return 2 * math.pi * r * lz * pressure - self._forces(r, lz, 0.0, threads=False)[0]
+
+        r, slope = self._net(lz)
+        push = outward(r)
+        if push < 0:  # the wall comes to rest inside the net
+            within = SLACKEST * r
+            r = brentq(outward, within, r, rtol=1e-14) if outward(within) > 0 else math.nan
+            push = 0.0
+        by_lz = self._forces(r, lz, 0.0, threads=False)[1]
+        force = by_lz - pressure * math.pi * r**2 - push * slope
+        return State(r, lz, 0.0, pressure, force, math.nan)
+
+
+def _wall(case: Case) -> tuple[float, Array, Array]:
+    """Radius on which the pressure acts; radii of the wall; the area 2 pi R dR of each."""
+    muscle = case.muscle
+    middle = muscle.inner_radius + muscle.wall_thickness / 2
+    if case.effects.wall is Wall.ONE_RADIUS:
+        one = muscle.braid.mean_diameter / 2 if muscle.braid else middle
+        return one, np.array([one]), np.array([2 * math.pi * middle * muscle.wall_thickness])
+    nodes, weights = np.polynomial.legendre.leggauss(WALL_POINTS)
+    half = muscle.wall_thickness / 2
+    radii = middle + half * nodes
+    return muscle.inner_radius, radii, 2 * math.pi * radii * half * weights
