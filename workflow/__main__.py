@@ -50,6 +50,10 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--record", type=Path, required=True)
     entry.add_argument("--state", type=int, required=True, help="number of the stop, from 0")
     entry.add_argument("--output", type=Path, required=True, help=".vtu")
+    entry = add(_calibrate, "Fit muscles to measured forces, as the study file says.")
+    entry.add_argument("--tables", type=Path, default=Path("results/tables"), help="folder")
+    entry.add_argument("--figures", type=Path, default=Path("results/figures"), help="folder")
+    entry.add_argument("--muscles", type=Path, default=Path("results/calibration"), help="folder")
     add(_explain, "Say which cases the scenes ask for, and which they share.")
     add(_cases, "List the cases: key, status of the record, label.")
     entry = add(_study, "Write the table and the figures of a study of the models.")
@@ -103,6 +107,13 @@ def _fields(given: argparse.Namespace) -> int:
     from workflow import paraview
 
     paraview.write(given.record, given.state, given.output)
+    return 0
+
+
+def _calibrate(given: argparse.Namespace) -> int:
+    from workflow.calibration import program
+
+    program.run(given.study, given.tables, given.figures, given.muscles)
     return 0
 
 

@@ -20,6 +20,7 @@ from workflow.schema import (
     HELD_KEY,
     QUANTITIES,
     SWEPT_KEY,
+    CalibrationEntry,
     MuscleEntry,
     Scene,
     StudyFile,
@@ -61,6 +62,7 @@ class Study:
     muscles: dict[str, StudiedMuscle]
     variants: dict[str, Variant]
     scenes: dict[str, Scene]
+    calibration: dict[str, CalibrationEntry]
     wall_time: int  # s, of one case
     memory: int  # MB, of one case
 
@@ -89,11 +91,14 @@ def load(path: Path | str) -> Study:
         muscles={name: muscles.built(name) for name in file.muscles},
         variants={name: _variant(source, file, name, v) for name, v in variants.items()},
         scenes=file.scenes,
+        calibration=file.calibration,
         wall_time=file.limits.wall_time,
         memory=file.limits.memory,
     )
     for name, scene in study.scenes.items():
         _check_scene(source, study, ("scenes", name), scene)
+    for name, entry in study.calibration.items():
+        _check_calibration(source, study, ("calibration", name), entry)
     return study
 
 
@@ -234,6 +239,21 @@ def _check_scene(source: Source, study: Study, keys: Keys, scene: Scene) -> None
         raise source.refuse((*keys, "models"), scene.models, allowed)
     for quantity in scene.quantities:
         _check_quantity(source, (*keys, "quantities"), scene, quantity)
+
+
+def _check_calibration(source: Source, study: Study, keys: Keys, entry: CalibrationEntry) -> None:
+    """A muscle with threads, and bounds within which something can be fitted."""
+    if entry.muscle not in study.muscles:
+        raise source.refuse((*keys, "muscle"), entry.muscle, choices(entry.muscle, study.muscles))
+    if study.muscles[entry.muscle].thread is None:
+        raise source.refuse((*keys, "muscle"), entry.muscle, "a muscle with a braid")
+    for key, (low, high) in entry.bounds:
+        if not 0 < low < high:
+            allowed = "two rising numbers > 0"
+            raise source.refuse((*keys, "bounds", key), [low, high], allowed)
+    for key in ("fit_pressure", "report_pressure"):
+        if min(getattr(entry, key)) <= 0:
+            raise source.refuse((*keys, key), list(getattr(entry, key)), "pressures > 0")
 
 
 def _check_quantity(source: Source, keys: Keys, scene: Scene, quantity: str) -> None:

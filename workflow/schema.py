@@ -195,6 +195,29 @@ class Scene(Entry):
         return getattr(self, SWEPT_KEY[self.path])
 
 
+Range = _tuple_of(tuple[float, float])
+
+
+class BoundsEntry(Entry):
+    """Between which values a calibration may go."""
+
+    thread_stiffness: Range = (10.0, 10000.0)  # N
+    c10: Range = (0.01, 2.0)  # MPa
+    c01: Range = (0.001, 1.0)  # MPa
+
+
+class CalibrationEntry(Entry):
+    """A fit of a muscle to measured forces."""
+
+    muscle: Name
+    reference: str = "festo_musclesim"
+    model: _one_of("membrane", "solid") = "membrane"
+    fit: _some_of("thread_stiffness", "c10", "c01") = ("thread_stiffness",)
+    bounds: BoundsEntry = BoundsEntry()
+    fit_pressure: Values = (0.3,)  # MPa
+    report_pressure: Values = (0.2, 0.4, 0.6)  # MPa
+
+
 class StudyFile(Entry):
     """The whole file."""
 
@@ -204,3 +227,4 @@ class StudyFile(Entry):
     numerics: NumericsEntry = NumericsEntry()
     limits: LimitsEntry = LimitsEntry()
     scenes: dict[Name, Scene]
+    calibration: dict[Name, CalibrationEntry] = {}

@@ -260,6 +260,7 @@ def test_shipped_studies_are_valid(path):
 def test_readme_has_every_key():
     text = (ROOT / "config/README.md").read_text()
     entries = (schema.MaterialEntry, schema.MuscleEntry, schema.LimitsEntry, schema.Scene)
+    entries += (schema.CalibrationEntry, schema.BoundsEntry)
     keys = {key for entry in entries for key in entry.model_fields}
     keys |= {f"effects.{key}" for key in schema.EffectsEntry.model_fields}
     keys |= set(schema.QUANTITIES)

@@ -11,7 +11,7 @@ import shlex
 import sys
 from pathlib import Path
 
-from solver.case import MODELS
+from solver.case import MODELS, digest
 from workflow import paraview, studies
 from workflow.config import load
 from workflow.figure import drawn

@@ -1,0 +1,1 @@
+"""Stiffnesses of a muscle from measured forces: ``snakemake --cores 2 calibrate``."""

@@ -1,0 +1,45 @@
+"""Forces before and after a calibration, over those it was fitted to and those it was not."""
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from workflow.figures.style import FULL, SERIES, labelled, legend, panels, percent
+
+REFERENCE = {"color": "0.3", "marker": "s", "linestyle": "none", "label": "reference"}
+CURVES = {  # values, whether the model of the fit: style
+    ("before", True): {"color": "0.6", "linestyle": (0, (5, 2)), "label": "before"},
+    ("after", True): {"color": SERIES[0]["color"], "label": "after"},
+    ("after", False): {
+        "color": SERIES[1]["color"],
+        "linestyle": "none",
+        "marker": "x",
+        "label": "after, by the solid",
+    },
+}
+CORNER = {"ha": "right", "va": "top", "fontsize": 7.5}
+
+
+def draw(tables: dict[str, pd.DataFrame], models: dict[str, str]) -> Figure:
+    """One row per calibration, one column per pressure; tables as of ``Calibration.states``."""
+    columns = max(table["pressure"].nunique() for table in tables.values())
+    count = len(tables)
+    shared = {"sharex": True, "sharey": "row", "gap": (0.16, 0.4)}
+    figure, axes = panels(FULL, 1.1 + 1.7 * count, count, columns, **shared)
+    for row, (name, table) in zip(axes, tables.items(), strict=True):
+        for ax, (pressure, here) in zip(row, table.groupby("pressure"), strict=False):
+            first = here.drop_duplicates("contraction")
+            ax.plot(first["contraction"], first["reference"], **REFERENCE)
+            for (when, of_fit), style in CURVES.items():
+                of_model = (here["model"] == models[name]) == of_fit
+                chosen = here[(here["values"] == when) & of_model]
+                ax.plot(chosen["contraction"], chosen["force"], **style)
+            ax.axhline(0, color="black", linewidth=0.7)
+            fitted = "fitted" if here["role"].iloc[0] == "fit" else "not fitted"
+            ax.set_title(f"{pressure:g} MPa, {fitted}")
+            percent(ax.xaxis, 0.05)
+        row[0].set_ylabel("force [N]")
+        row[0].annotate(name, (0.98, 0.96), xycoords="axes fraction", **CORNER)
+    for ax in axes[-1]:
+        ax.set_xlabel("contraction [%]")
+    legend(figure, labelled(axes))
+    return figure

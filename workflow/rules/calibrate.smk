@@ -1,0 +1,49 @@
+# Measured forces -> stiffnesses of muscles: snakemake --cores 2 calibrate
+#
+#   in   the calibrations of the study file and their muscles; reference maps or a file of the user
+#   out  results/tables/calibration.csv, calibration_values.csv
+#        results/calibration/<name>.yaml    a muscle to paste into a study file
+#        results/figures/calibration.png, .svg
+
+
+def measured_files():
+    """Files of the user that calibrations are fitted to."""
+    named = {entry.reference for entry in PLAN.study.calibration.values()}
+    return sorted(name for name in named if Path(name).suffix)
+
+
+def asked_calibrations():
+    """All that the calibrations depend on, as one parameter."""
+    study = PLAN.study
+    muscles = {entry.muscle for entry in study.calibration.values()}
+    made_of = [(name, study.muscles[name]) for name in sorted(muscles)]
+    return digest(repr((sorted(study.calibration.items()), made_of, study.variants["default"])))
+
+
+rule calibrate:
+    input:
+        files=measured_files(),
+        reference=sources("config/reference/*.csv"),
+        sources=sources(
+            "geometry/*.py",
+            "solver/*.py",
+            "solver/edp/*",
+            "workflow/*.py",
+            "workflow/calibration/*.py",
+            "workflow/figures/style.py",
+        ),
+    output:
+        table="results/tables/calibration.csv",
+        values="results/tables/calibration_values.csv",
+        muscles=expand("results/calibration/{name}.yaml", name=PLAN.study.calibration),
+        png="results/figures/calibration.png",
+        svg="results/figures/calibration.svg",
+    log:
+        "results/logs/calibrate.log",
+    params:
+        study=STUDY,
+        asked=asked_calibrations(),
+    message:
+        "Fitting muscles to measured forces"
+    shell:
+        "python -m workflow calibrate --study {params.study:q} > {log:q} 2>&1"
