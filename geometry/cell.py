@@ -26,6 +26,7 @@ from geometry.grading import UnbuildableMesh
 from geometry.labels import Boundary, Region
 from geometry.muscle import Muscle
 from geometry.refusal import is_count, is_number
+from geometry.seal import seal
 
 # Faces of a gmsh box in the order of their tags.
 FACES = (
@@ -139,7 +140,7 @@ def write(muscle: Muscle, mesh: CellMesh, thread_radius: float | None, path: Pat
         raise UnbuildableMesh("thread_radius", thread_radius, "a finite number > 0 (mm)")
     box = Box(muscle)
     length = box.spacing * mesh.repeats
-    with writing(path, ".mesh"):
+    with writing(path, ".mesh", seal):
         gmsh.model.occ.addBox(
             muscle.inner_radius, 0, 0, muscle.wall_thickness, box.width, length, tag=1
         )

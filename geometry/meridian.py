@@ -11,6 +11,7 @@ from geometry.gmsh_file import writing
 from geometry.grading import Grading
 from geometry.labels import Boundary
 from geometry.muscle import Muscle
+from geometry.seal import seal
 
 FIRST_FREE_TAG = 100  # above every label
 
@@ -44,7 +45,7 @@ def write(muscle: Muscle, mesh: MeridianMesh, path: Path) -> None:
         *range(FIRST_FREE_TAG, FIRST_FREE_TAG + len(stations) - 2),
         Boundary.END,
     ]
-    with writing(path, ".mesh"):
+    with writing(path, ".mesh", seal):
         geo = gmsh.model.geo
         for tag, z in zip(tags, stations, strict=True):
             geo.addPoint(muscle.inner_radius, z, 0, tag=tag)

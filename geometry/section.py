@@ -24,6 +24,7 @@ from geometry.grading import Grading, UnbuildableMesh
 from geometry.labels import Boundary, Region
 from geometry.muscle import Muscle
 from geometry.refusal import is_count
+from geometry.seal import seal
 
 ENDS = ("clamp", "butt", "sliding")
 
@@ -78,7 +79,7 @@ def write(muscle: Muscle, mesh: SectionMesh, end: str, path: Path) -> None:
     heights = stations(muscle, mesh, end)
     radii = [muscle.inner_radius, *muscle.layer_radii, muscle.outer_radius]
     rows = mesh.rows if muscle.braid else (sum(mesh.rows),)
-    with writing(path, ".msh"):
+    with writing(path, ".msh", seal):
         geo = gmsh.model.geo
         points = [[geo.addPoint(r, z, 0) for z in heights] for r in radii]
         axial = [_lines(column) for column in points]

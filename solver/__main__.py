@@ -1,7 +1,8 @@
 """Solve one case: ``python -m solver --help``.
 
 Ends with status 0 whenever the case was understood: how the solve went is a status in the record.
-Ends with status 2 and one message if the case makes no sense.
+Ends with status 2 and one message if the case makes no sense, with status 1 and one message if no
+record could be written.
 """
 
 import argparse
@@ -14,7 +15,7 @@ from pathlib import Path
 
 from geometry.refusal import Refusal
 from solver.case import Case
-from solver.freefem import Limits
+from solver.freefem import Limits, Usage
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -38,22 +39,33 @@ def main(arguments: list[str] | None = None) -> int:
     from solver.solve import solve
 
     limits = Limits(wall_time=given.wall_time, memory=given.memory)
-    given.log.write_text("")
-    solution, usage = solve(case, given.mesh, given.log, limits)
-    record.write(given.record, case, solution)
+    try:
+        given.log.write_text("")
+        solution, usage = solve(case, given.mesh, given.log, limits)
+        record.write(given.record, case, solution)
+        _write_cost(given.cost, start, solution.status, usage)
+    except OSError as error:
+        print(f"the record cannot be written: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _write_cost(path: Path, start: float, status: str, usage: Usage | None) -> None:
     cost = {
         "total_seconds": time.monotonic() - start,
         "python_cpu_seconds": time.process_time(),  # from its start, with all imports
-        "status": solution.status,
+        "status": status,
     }
     if usage is not None:
         values = asdict(usage)
         values |= values.pop("parts")
         cost |= {f"freefem_{name}": value for name, value in values.items()}
-    aside = given.cost.with_name(f".{given.cost.name}.{os.getpid()}")
-    aside.write_text(json.dumps(cost, sort_keys=True) + "\n")
-    os.replace(aside, given.cost)
-    return 0
+    aside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        aside.write_text(json.dumps(cost, sort_keys=True) + "\n")
+        os.replace(aside, path)
+    finally:
+        aside.unlink(missing_ok=True)
 
 
 if __name__ == "__main__":

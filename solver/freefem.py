@@ -1,5 +1,7 @@
 """Run a FreeFEM program of solver/edp. The only module that starts a process."""
 
+import ctypes
+import errno
 import os
 import resource
 import shutil
@@ -11,9 +13,12 @@ from pathlib import Path
 
 EDP = Path(__file__).parent / "edp"
 DEBIAN_PLUGINS = Path("/usr/lib/freefem++")  # where Debian puts them; its program looks elsewhere
+FROM_OUTSIDE = {-signal.SIGKILL, -signal.SIGTERM, -signal.SIGINT, -signal.SIGHUP}
 LOG_TAIL = 15  # lines of the log that a message quotes
 MIB = 1024**2
 SIZES = {"unknowns"}  # parts of a usage that do not add up
+LIBC = ctypes.CDLL(None)  # loaded before a child forks
+PR_SET_PDEATHSIG = 1  # linux/prctl.h
 OWN_EXITS = {64: "an argument is missing"}
 FREEFEM_EXITS = {
     1: "the program does not compile",
@@ -24,6 +29,10 @@ FREEFEM_EXITS = {
 
 class FreeFemError(RuntimeError):
     """FreeFEM cannot be run, or stopped with a non-zero status."""
+
+
+class Interrupted(FreeFemError):
+    """It was stopped from outside, which says nothing about the case."""
 
 
 class OutOfTime(FreeFemError):
@@ -117,6 +126,10 @@ def run(
     ------
     OutOfTime
         If it runs longer than the limit; it and its children are gone then.
+    Interrupted
+        If a signal from outside stopped it.
+    OSError
+        If it could not write a file to its end.
     FreeFemError
         If it cannot be started or ends with a non-zero status.
     """
@@ -139,8 +152,10 @@ def run(
             raise OutOfTime(f"stopped after {limits.wall_time:g} s, the limit") from late
         finally:
             _end(process)
+    if status == -signal.SIGXFSZ:
+        raise OSError(errno.EFBIG, "FreeFEM has reached the limit of file sizes")
     if status != 0:
-        raise FreeFemError(explain(status))
+        raise (Interrupted if status in FROM_OUTSIDE else FreeFemError)(explain(status))
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     parts = _parts(workdir / "cost.csv")
     # what the system says is the largest of all children, and of this process before it became one
@@ -177,7 +192,11 @@ def tail(log: Path) -> str:
 
 
 def _limit(limits: Limits) -> None:
-    """In the child, before FreeFEM starts: no more memory than allowed, and no core file."""
+    """In the child, before FreeFEM starts: no more memory than allowed, and no core file.
+
+    It ends with this process, however that ends.
+    """
+    LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     memory = int(limits.memory * MIB)
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

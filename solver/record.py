@@ -1,7 +1,9 @@
 """The HDF5 record of one solved case: its layout, writing, reading.
 
-Layout, version 1
+Layout, version 2
 -----------------
+(512 bytes)  one line of text: file type, layout, and the SHA-256 of all that follows these bytes,
+             in what HDF5 calls the user block; programs that read HDF5 skip it
 /            attrs: filetype "muscle-case", layout, key, case (canonical JSON, solver/case.py),
              code (digest of the sources that solved it), status, reason, log (its end, if failed),
              effects (names of those that are on), unknowns (beside contraction and pressure)
@@ -18,6 +20,8 @@ A record is complete or absent: it is written aside and renamed. It holds no tim
 that the same case solved again gives the same bytes.
 """
 
+import hashlib
+import io
 import json
 import os
 from dataclasses import dataclass, field
@@ -30,7 +34,8 @@ from numpy.typing import NDArray
 from solver.case import Case, digest
 from solver.status import CaseStatus, StateStatus
 
-FILETYPE, LAYOUT = "muscle-case", 1
+FILETYPE, LAYOUT = "muscle-case", 2
+BLOCK = 512  # bytes before the HDF5 data
 
 VARIABLES = {
     # name: (unit, long name)
@@ -116,34 +121,40 @@ def write(path: Path, case: Case, solution: Solution) -> None:
     """Write the record of a case, whole or not at all."""
     import h5py
 
+    content = io.BytesIO()  # HDF5 crashes where it cannot write to the disk
+    with h5py.File(content, "w", userblock_size=BLOCK) as file:
+        _write(file, case, solution)
     aside = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        with h5py.File(aside, "w") as file:
-            file.attrs.update(
-                filetype=FILETYPE,
-                layout=LAYOUT,
-                key=case.key,
-                case=case.canonical(),
-                code=code_digest(),
-                status=solution.status.value,
-                reason=solution.reason,
-                log=solution.log,
-                effects=" ".join(case.active_effects),
-                unknowns=solution.unknowns,
-            )
-            _write_parameters(file.create_group("parameters"), case)
-            states = file.create_group("states")
-            for name, (unit, long_name) in VARIABLES.items():
-                data = states.create_dataset(name, data=solution.states[name])
-                data.attrs.update(units=unit, long_name=long_name)
-            states.create_dataset("status", data=[s.value.encode() for s in solution.state_status])
-            for number, arrays in sorted(solution.fields.items()):
-                group = file.create_group(f"fields/{number}")
-                for name, values in arrays.items():
-                    group.create_dataset(name, data=values)
+        aside.write_bytes(sealed(content.getvalue()))
         os.replace(aside, path)
     finally:
         aside.unlink(missing_ok=True)
+
+
+def _write(file: Any, case: Case, solution: Solution) -> None:
+    file.attrs.update(
+        filetype=FILETYPE,
+        layout=LAYOUT,
+        key=case.key,
+        case=case.canonical(),
+        code=code_digest(),
+        status=solution.status.value,
+        reason=solution.reason,
+        log=solution.log,
+        effects=" ".join(case.active_effects),
+        unknowns=solution.unknowns,
+    )
+    _write_parameters(file.create_group("parameters"), case)
+    states = file.create_group("states")
+    for name, (unit, long_name) in VARIABLES.items():
+        data = states.create_dataset(name, data=solution.states[name])
+        data.attrs.update(units=unit, long_name=long_name)
+    states.create_dataset("status", data=[s.value.encode() for s in solution.state_status])
+    for number, arrays in sorted(solution.fields.items()):
+        group = file.create_group(f"fields/{number}")
+        for name, values in arrays.items():
+            group.create_dataset(name, data=values)
 
 
 def read(path: Path) -> tuple[Case, Solution]:
@@ -157,10 +168,34 @@ def read(path: Path) -> tuple[Case, Solution]:
     import h5py
 
     try:
+        _check_seal(path)
         with h5py.File(path) as file:
             return _read(file)
     except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:
         raise NoRecord(f"{path}: no readable record ({error})") from error
+
+
+def sealed(content: bytes) -> bytes:
+    """The content of a record with its checksum in the first bytes."""
+    return _head(content[BLOCK:]) + content[BLOCK:]
+
+
+def _head(data: bytes) -> bytes:
+    text = f"{FILETYPE} layout {LAYOUT} sha256 {hashlib.sha256(data).hexdigest()}\n"
+    return text.encode().ljust(BLOCK, b"\0")
+
+
+def _check_seal(path: Path) -> None:
+    """Raise ValueError unless the file is as it was written, to the last bit.
+
+    HDF5 itself notices few flipped bytes, and some it does not survive.
+    """
+    content = path.read_bytes()
+    if content != sealed(content):
+        kind = sealed(b"").partition(b" sha256")[0]
+        if content.startswith(kind):
+            raise ValueError("it has changed since it was written")
+        raise ValueError(f"it does not begin with {kind.decode()!r}")
 
 
 def _read(file: Any) -> tuple[Case, Solution]:

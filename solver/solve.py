@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.cell import Box
+from geometry.seal import is_sealed
 from solver import freefem
 from solver.case import Case
 from solver.effects import End, Twist, Volume
@@ -28,12 +29,20 @@ FIELDS = {  # columns of fields_<waypoint>.txt, by model
 def solve(
     case: Case, mesh: Path | None, log: Path, limits: freefem.Limits
 ) -> tuple[Solution, freefem.Usage | None]:
-    """Solve a case; the usage is None for models without FreeFEM."""
+    """Solve a case; the usage is None for models without FreeFEM.
+
+    Raises
+    ------
+    OSError
+        If the disk is full: that is no result of the case.
+    """
     direct = _direct(case.model)
     if direct is not None:
         return _with_diameter(case, direct(case)), None
     if mesh is None or not mesh.exists() or mesh.stat().st_size == 0:
         return failure(case, CaseStatus.MESH_FAILED, f"no mesh at {mesh}"), None
+    if not is_sealed(mesh):
+        return failure(case, CaseStatus.MESH_FAILED, f"{mesh} is damaged"), None
     states = unreached(case.path.states)
     fields: dict[int, dict[str, NDArray[np.float64]]] = {}
     usage: freefem.Usage | None = None
@@ -72,18 +81,37 @@ def _follow(
         (work / "composition.idp").write_text(composition(case))
         (work / "waypoints.txt").write_text(waypoint_text(case, way))
         given = flags(case, mesh.resolve())
+        program = f"{case.model}.edp", given, work, log.resolve(), limits
         try:
-            usage = freefem.run(f"{case.model}.edp", given, work, log.resolve(), limits)
+            try:
+                usage = freefem.run(*program)
+            except freefem.Interrupted:
+                usage = freefem.run(*program)  # once more; whoever stops it again means it
         except freefem.OutOfTime as error:
             status, reason = CaseStatus.TIMEOUT, str(error)
         except freefem.FreeFemError as error:
             status, reason = CaseStatus.SOLVER_ERROR, str(error)
-        _collect(case, way, work, states, fields)
-        unknowns = _number(work / "unknowns.txt")
         ended = work / "reason.txt"
         if status is None and ended.exists():
-            reason = ended.read_text().strip()
+            reason = ended.read_text(errors="replace").strip()
+        unknowns = 0
+        try:
+            unknowns = _number(work / "unknowns.txt")
+            _collect(case, way, work, states, fields)
+        except (ValueError, TypeError, LookupError) as error:
+            status = status or CaseStatus.SOLVER_ERROR
+            reason = reason or f"what FreeFEM has written cannot be read ({error})"
+        stops = [point.stop for point in way if point.stop is not None]
+        if not (status or reason) and np.isnan(states["force"][stops]).any():
+            status, reason = CaseStatus.SOLVER_ERROR, "FreeFEM ended early and did not say why"
+        if status is CaseStatus.SOLVER_ERROR:
+            _check_disk(work)
     return _End(status, reason, usage, unknowns)
+
+
+def _check_disk(folder: Path) -> None:
+    """Raise OSError if nothing can be written: then what failed says nothing about the case."""
+    (folder / "probe").write_bytes(bytes(2**16))
 
 
 def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solution:
@@ -197,7 +225,8 @@ def _collect(
     for row in _rows(work / "states.csv"):
         number = int(row["waypoint"])
         stop = way[number].stop
-        assert stop is not None  # only waypoints with a stop are written
+        if stop is None:
+            raise ValueError(f"a state at waypoint {number}, which has no stop")
         for name in VARIABLES.keys() & row.keys():
             states[name][stop] = row[name]
         field_file = work / f"fields_{number}.txt"

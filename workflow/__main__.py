@@ -96,8 +96,14 @@ def _deviation(given: argparse.Namespace) -> int:
     from workflow import deviation
     from workflow.aside import aside
 
-    with xr.open_datatree(given.dataset, engine="h5netcdf") as tree:
-        rows = deviation.table(tree, given.muscles)
+    try:
+        with xr.open_datatree(given.dataset, engine="h5netcdf") as tree:
+            rows = deviation.table(tree.load(), given.muscles)
+    except (OSError, RuntimeError) as error:
+        raise StudyError(
+            f"{given.dataset}: no readable dataset ({error})\n"
+            "  delete the file and run snakemake to gather it again"
+        ) from None
     with aside(given.table) as beside:
         rows.to_csv(beside, index=False, float_format="%.6g")
     return 0

@@ -192,6 +192,32 @@ def test_truncated(written, share):
     assert_no_record(written)
 
 
+@pytest.mark.parametrize("place", range(0, 1000, 37))
+def test_a_flipped_bit_anywhere(written, place):
+    """Also where HDF5 notices nothing, as in the numbers."""
+    content = bytearray(written.read_bytes())
+    content[place * len(content) // 1000] ^= 1 << place % 8
+    written.write_bytes(content)
+    assert_no_record(written)
+
+
+def test_appended_bytes(written):
+    with written.open("ab") as file:
+        file.write(b"\0")
+    assert_no_record(written)
+
+
+def test_another_layout_is_named(written):
+    written.write_bytes(written.read_bytes()[record.BLOCK :])  # as of version 1
+    with pytest.raises(NoRecord, match=f"does not begin with 'muscle-case layout {record.LAYOUT}'"):
+        record.read(written)
+
+
+def reseal(path):
+    """What is wrong then is not the checksum."""
+    path.write_bytes(record.sealed(path.read_bytes()))
+
+
 @pytest.mark.parametrize(
     ("attribute", "value"),
     [
@@ -207,6 +233,7 @@ def test_truncated(written, share):
 def test_damaged_attribute(written, attribute, value):
     with h5py.File(written, "a") as file:
         file.attrs[attribute] = value
+    reseal(written)
     assert_no_record(written)
 
 
@@ -214,6 +241,7 @@ def test_damaged_attribute(written, attribute, value):
 def test_missing_attribute(written, attribute):
     with h5py.File(written, "a") as file:
         del file.attrs[attribute]
+    reseal(written)
     assert_no_record(written)
 
 
@@ -221,6 +249,7 @@ def test_missing_attribute(written, attribute):
 def test_missing_dataset(written, name):
     with h5py.File(written, "a") as file:
         del file[name]
+    reseal(written)
     assert_no_record(written)
 
 
@@ -228,10 +257,12 @@ def test_states_of_another_length(written):
     with h5py.File(written, "a") as file:
         del file["states/force"]
         file["states/force"] = np.zeros(2)
+    reseal(written)
     assert_no_record(written)
 
 
 def test_unknown_word_for_a_state(written):
     with h5py.File(written, "a") as file:
         file["states/status"][0] = b"fine"
+    reseal(written)
     assert_no_record(written)

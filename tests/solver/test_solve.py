@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from geometry.seal import seal
 from geometry.section import SectionMesh
 from solver import freefem, solve
 from solver.effects import Effects
@@ -144,7 +145,8 @@ def test_without_a_mesh(make_case, tmp_path):
 
 def test_a_file_that_is_no_mesh(make_case, tmp_path):
     mesh = tmp_path / "bad.mesh"
-    mesh.write_text("nonsense")
+    mesh.write_text("nonsense End\n")
+    seal(mesh)
     solution, _ = solve.solve(make_case(), mesh, tmp_path / "log", LIMITS)
     assert solution.status in (CaseStatus.SOLVER_ERROR, CaseStatus.MESH_FAILED)
     assert_partial(solution, reached=0)

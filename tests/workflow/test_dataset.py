@@ -2,12 +2,14 @@
 
 import csv
 
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
 
 from solver.record import VARIABLES
 from workflow import dataset, failures, records
+from workflow.__main__ import main
 from workflow.plan import Place
 from workflow.scene_data import SceneData
 from workflow.study_error import StudyError
@@ -208,3 +210,18 @@ def test_the_record_of_another_case_is_reported(tmp_path):
     one.write_bytes(other.read_bytes())
     with pytest.raises(StudyError, match="holds case"):
         records.curves_of_study(found, tmp_path / "cases")
+
+
+def test_a_flipped_bit_in_a_number_is_noticed(study, tmp_path):
+    """By whatever program reads it: HDF5 checks."""
+    found, folder = study
+    path = tmp_path / "dataset.nc"
+    dataset.write(dataset.build(records.curves_of_study(found, folder), found.study.muscles), path)
+    with h5py.File(path) as file:
+        place = file["isobaric/force"].id.get_chunk_info(0).byte_offset
+    content = bytearray(path.read_bytes())
+    content[place + 3] ^= 4
+    path.write_bytes(content)
+    with pytest.raises(OSError, match="filter"), xr.open_datatree(path) as tree:
+        tree.load()
+    assert main(["deviation", f"--dataset={path}", "--muscles=one", "--table=x.csv"]) == 1

@@ -110,7 +110,7 @@ def solver_sources(wildcards):
     others = [
         f for model, files in MODEL_SOURCES.items() if model != case.case.model for f in files
     ]
-    geometry = ["geometry/muscle.py", "geometry/refusal.py", "geometry/cell.py"]
+    geometry = [f"geometry/{name}.py" for name in ("muscle", "refusal", "cell", "seal")]
     return sources("solver/*.py", *geometry, *edp, without=others)
 
 
