@@ -4,7 +4,7 @@ SPEC is a JSON file (or - for standard input) that says what to make::
 
     {"kind": "meridian", "muscle": {...}, "mesh": {...}}                  -> Medit .mesh
     {"kind": "section", "end": "clamp", "muscle": {...}, "mesh": {...}}   -> MSH 2.2
-    {"kind": "cell", "thread_radius": 0.3, "muscle": {...}, "mesh": {...}} -> Medit .mesh
+    {"kind": "cell", "thread_radius": 0.3, "thread_lines": false, ...}    -> Medit .mesh
     {"kind": "whole", "muscle": {...}}                                    -> STEP
 
 with the fields of Muscle, MeridianMesh, SectionMesh and CellMesh. Ends with status 2
@@ -26,7 +26,7 @@ from geometry.refusal import Refusal, build
 KEYS = {
     "meridian": {"kind", "muscle", "mesh"},
     "section": {"kind", "muscle", "mesh", "end"},
-    "cell": {"kind", "muscle", "mesh", "thread_radius"},
+    "cell": {"kind", "muscle", "mesh", "thread_radius", "thread_lines"},
     "whole": {"kind", "muscle"},
 }
 
@@ -53,7 +53,8 @@ def make(spec: Mapping[str, Any], output: Path) -> None:
         section.write(muscle, section_mesh, spec["end"], output)
     elif kind == "cell":
         cell_mesh = build(cell.CellMesh, spec["mesh"], UnbuildableMesh, "mesh")
-        cell.write(muscle, cell_mesh, spec["thread_radius"], output)
+        lines = {"thread_lines": spec["thread_lines"] is True}
+        cell.write(muscle, cell_mesh, spec["thread_radius"], output, **lines)
     else:
         whole.write(muscle, output)
 

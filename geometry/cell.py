@@ -121,11 +121,18 @@ def volume(muscle: Muscle, mesh: CellMesh) -> float:
     return muscle.wall_thickness * box.width * box.spacing * mesh.repeats
 
 
-def write(muscle: Muscle, mesh: CellMesh, thread_radius: float | None, path: Path) -> None:
+def write(
+    muscle: Muscle,
+    mesh: CellMesh,
+    thread_radius: float | None,
+    path: Path,
+    *,
+    thread_lines: bool = False,
+) -> None:
     """Write the cell as a Medit file for FreeFEM's ``readmesh3``, faces labelled.
 
     ``thread_radius`` is that of the tubes over which the threads are spread [mm]; None for a bare
-    tube.
+    tube. With ``thread_lines`` every thread is a line of the mesh, for wires of zero thickness.
 
     Raises
     ------
@@ -144,6 +151,8 @@ def write(muscle: Muscle, mesh: CellMesh, thread_radius: float | None, path: Pat
         gmsh.model.occ.addBox(
             muscle.inner_radius, 0, 0, muscle.wall_thickness, box.width, length, tag=1
         )
+        if thread_lines:
+            _add_thread_lines(box, mesh)
         gmsh.model.occ.synchronize()
         for label in FACES:
             gmsh.model.addPhysicalGroup(2, [FACES.index(label) + 1], label, label.name)
@@ -153,6 +162,25 @@ def write(muscle: Muscle, mesh: CellMesh, thread_radius: float | None, path: Pat
         _set_sizes(box, mesh, thread_radius)
         gmsh.option.setNumber("Mesh.SaveElementTagType", 2)  # faces labelled by their group
         gmsh.model.mesh.generate(3)
+
+
+def _add_thread_lines(box: Box, mesh: CellMesh) -> None:
+    """Make every thread a line of the mesh, with its ends on all edges that are one by period.
+
+    Off the lines of the mesh a wire would cut through tetrahedra, and turn them inside out. Threads
+    that are spread over tubes do better without: their force is 0.02 % off then, else 0.2 %.
+    """
+    import gmsh
+
+    occ, parts = gmsh.model.occ, []
+    for radius, falls in zip(box.muscle.layer_radii, (False, True), strict=False):
+        heights = [k * box.spacing for k in range(mesh.repeats + 1)]
+        ends = [[occ.addPoint(radius, y, z) for z in heights] for y in (0, box.width)]
+        low, high = reversed(ends) if falls else ends
+        parts += [(0, point) for column in ends for point in column]
+        parts += [(1, occ.addLine(a, b)) for a, b in zip(low, high[1:], strict=False)]
+    if parts:
+        occ.fragment([(3, 1)], parts)
 
 
 def _make_periodic(low: Boundary, high: Boundary, shift: tuple[float, float, float]) -> None:

@@ -15,6 +15,7 @@ from geometry.refusal import build
 from solver.effects import (
     Effects,
     End,
+    Layers,
     Rubber,
     Stretch,
     ThreadLaw,
@@ -161,6 +162,7 @@ class Case:
             spec["thread_radius"] = (
                 self.numerics.spread.radius_of(self.thread) if self.thread is not None else None
             )
+            spec["thread_lines"] = self.thread is not None and self.effects.layers is Layers.WIRE
         return json.dumps(_canonical(spec), sort_keys=True, allow_nan=False)
 
     @classmethod

@@ -15,6 +15,9 @@ Layout, version 2
 /fields/<n>  of state n, where asked for. Membrane: meridian (node, 4) = R, Z, r, z [mm].
              Solid: corners (3 triangles, 4) = R, Z, r, z [mm] and stress (3 triangles, 4) =
              Cauchy rr, rz, zz, tt [MPa], three rows per triangle, discontinuous between them.
+             Cell: corners (4 tetrahedra, 6) = R, T, Z, r, t, z [mm, rad], stress (.., 6) = Cauchy
+             stress of the rubber rr, tt, zz, rt, tz, rz [MPa], threads (.., 4) = thread stretch
+             of both layers [1] and their densities [mm/mm3].
 
 A record is complete or absent: it is written aside and renamed. It holds no time and no date, so
 that the same case solved again gives the same bytes.

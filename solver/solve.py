@@ -23,6 +23,7 @@ LIMITS = ("fold", "asymptote", "crumpling", "overhang")  # kinds of limit that s
 FIELDS = {  # columns of fields_<waypoint>.txt, by model
     "membrane": {"meridian": slice(0, 4)},
     "solid": {"corners": slice(0, 4), "stress": slice(4, 8)},
+    "cell": {"corners": slice(0, 6), "stress": slice(6, 12), "threads": slice(12, 16)},
 }
 
 

@@ -89,8 +89,9 @@ def mesh_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Case], Path |
             if kind == "meridian":
                 meridian.write(case.muscle, case.numerics.meridian, path)
             elif kind == "cell":
-                radius = json.loads(spec)["thread_radius"]
-                cell.write(case.muscle, case.numerics.cell, radius, path)
+                asked = json.loads(spec)
+                lines = {"thread_lines": asked["thread_lines"]}
+                cell.write(case.muscle, case.numerics.cell, asked["thread_radius"], path, **lines)
             else:
                 section.write(case.muscle, case.numerics.section, case.effects.end, path)
         return path

@@ -31,14 +31,15 @@ def read(path):
     )
 
 
-@pytest.fixture(params=["braid", "bare", "two cells"])
+@pytest.fixture(params=["braid", "bare", "two cells", "lines", "two cells, lines"])
 def made(request, muscle, tmp_path):
     """A mesh, with what it was made from."""
-    mesh = CellMesh(repeats=2 if request.param == "two cells" else 1)
+    mesh = CellMesh(repeats=2 if "two cells" in request.param else 1)
     bare = Muscle(inner_diameter=20, wall_thickness=2, length=20, braid=None)
     tube = bare if request.param == "bare" else muscle
     path = tmp_path / "cell.mesh"
-    cell.write(tube, mesh, None if request.param == "bare" else RADIUS, path)
+    lines = "lines" in request.param
+    cell.write(tube, mesh, None if request.param == "bare" else RADIUS, path, thread_lines=lines)
     return tube, mesh, *read(path)
 
 
@@ -94,6 +95,19 @@ def test_threads_are_straight_diagonals(muscle):
     # on the inner layer's radius, half-way between its threads and beside the outer layer's
     between = math.pi * inner / box.sectors * math.cos(muscle.braid.layer_angles[0])
     assert box.distance(inner, 0, box.spacing / 2) == pytest.approx(min(between, outer - inner))
+
+
+def test_threads_are_lines_of_the_mesh_where_asked(muscle, tmp_path):
+    cell.write(muscle, CellMesh(), RADIUS, tmp_path / "cell.mesh", thread_lines=True)
+    points, _, tetrahedra = read(tmp_path / "cell.mesh")
+    pairs = {tuple(sorted((t[i], t[j]))) for t in tetrahedra for i in range(4) for j in range(i)}
+    lengths = dict.fromkeys(muscle.layer_radii, 0.0)
+    for ends in (points[list(pair)] for pair in pairs):
+        places = [*ends, ends.mean(axis=0)]
+        if all(Box(muscle).distance(*place) < 1e-6 for place in places):
+            nearest = min(lengths, key=lambda radius, at=ends: abs(radius - at[0, 0]))
+            lengths[nearest] += abs(ends[0, 2] - ends[1, 2])
+    assert list(lengths.values()) == pytest.approx([Box(muscle).spacing] * 2)
 
 
 def test_the_mesh_is_finer_at_the_threads(muscle, tmp_path):

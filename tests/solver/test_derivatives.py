@@ -8,11 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from geometry.cell import CellMesh
 from geometry.section import SectionMesh
 from solver.effects import Effects
 from solver.numerics import Numerics
 
 EDP = Path(__file__).parent / "edp"
+CELL = Numerics(cell=CellMesh(thread_size=2, body_size=0.5))
 COARSE = Numerics(section=SectionMesh(cap_step=2, body_step=4, growth=2))
 
 
@@ -81,4 +83,20 @@ def test_bare_solid(make_case, bare_tube, errors, end):
 def test_bare_membrane(make_case, bare_tube, errors):
     case = make_case(model="membrane", muscle=bare_tube)
     found = errors(case, amplitude=0.02, multiplier=0.0, contraction=0.1, pressure=0.05)
+    check(found, tolerance=1e-6)
+
+
+@pytest.mark.parametrize("threads", ["tension_only", "two_way"])
+@pytest.mark.parametrize("layers", ["discrete", "smeared", "wire"])
+@pytest.mark.parametrize("twist", ["held", "free"])
+def test_cell(make_case, errors, twist, layers, threads):
+    effects = Effects(threads=threads, layers=layers, twist=twist)
+    case = make_case(model="cell", effects=effects, numerics=CELL)
+    found = errors(case, amplitude=0.02, multiplier=0.1, contraction=0.1, pressure=0.3)
+    check(found, tolerance=1e-6)
+
+
+def test_bare_cell(make_case, bare_tube, errors):
+    case = make_case(model="cell", muscle=bare_tube, numerics=CELL)
+    found = errors(case, amplitude=0.02, multiplier=0.1, contraction=0.1, pressure=0.05)
     check(found, tolerance=1e-6)
