@@ -55,7 +55,9 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--figures", type=Path, default=Path("results/figures"), help="folder")
     entry.add_argument("--muscles", type=Path, default=Path("results/calibration"), help="folder")
     add(_explain, "Say which cases the scenes ask for, and which they share.")
-    add(_cases, "List the cases: key, status of the record, label.")
+    of_study = {"metavar": "STUDY", "help": "of this study of the models; else of the scenes"}
+    entry = add(_cases, "List the cases: key, status of the record, label.")
+    entry.add_argument("--name", **of_study)
     entry = add(_study, "Write the table and the figures of a study of the models.")
     entry.add_argument("--name", required=True)
     entry.add_argument("--table", type=Path, required=True)
@@ -63,6 +65,7 @@ def _parser() -> argparse.ArgumentParser:
     entry = add(_failures, "List what failed; status 1 if anything did.", study=False)
     entry.add_argument("--table", type=Path, default=FAILURES)
     entry = add(_retry, "Delete the records of failed cases, so that they are solved again.")
+    entry.add_argument("--name", **of_study)
     return parser
 
 
@@ -136,22 +139,20 @@ def _explain(given: argparse.Namespace) -> int:
 
 
 def _cases(given: argparse.Namespace) -> int:
-    plan = _plan(given)
-    for key, case in plan.cases.items():
-        print(f"{key}  {_status(plan, key):13}  {case.label}")
+    from workflow import records
+
+    for key, case in _asked(given).items():
+        print(f"{key}  {records.status(key, case.label):13}  {case.label}")
     return 0
 
 
-def _status(plan, key: str) -> str:
-    """Status in the record of a case, or why there is none."""
-    from workflow import records
+def _asked(given: argparse.Namespace):
+    """Cases by key: those of the scenes, or those of a study that is named."""
+    if given.name is None:
+        return _plan(given).cases
+    from workflow import studies
 
-    if not records.path_of(key).exists():
-        return "not solved"
-    try:
-        return records.read(plan, [key])[key][1].status.value
-    except StudyError:
-        return "damaged"
+    return {asked.case.key: asked for asked in studies.cases(given.name, str(given.study))}
 
 
 def _study(given: argparse.Namespace) -> int:
@@ -175,9 +176,8 @@ def _failures(given: argparse.Namespace) -> int:
 def _retry(given: argparse.Namespace) -> int:
     from workflow import records
 
-    plan = _plan(given)
-    for key, case in plan.cases.items():
-        status = _status(plan, key)
+    for key, case in _asked(given).items():
+        status = records.status(key, case.label)
         if status not in ("converged", "limit_point", "not solved"):
             records.path_of(key).unlink()
             if status == "mesh_failed":

@@ -57,11 +57,12 @@ def read(
     StudyError
         If a file is missing, damaged, or the record of another case.
     """
-    return {key: _read(plan, key, folder) for key in dict.fromkeys(keys)}
+    return {key: read_one(key, plan.cases[key].label, folder) for key in dict.fromkeys(keys)}
 
 
-def _read(plan: Plan, key: str, folder: Path) -> tuple[Case, Solution]:
-    path, label = path_of(key, folder), plan.cases[key].label
+def read_one(key: str, label: str, folder: Path = FOLDER) -> tuple[Case, Solution]:
+    """Case and solution of a key; ``label`` is what messages call it. Raises as ``read``."""
+    path = path_of(key, folder)
     if not path.exists():
         raise StudyError(f"{path}: there is no record of {label}; run snakemake")
     try:
@@ -74,3 +75,13 @@ def _read(plan: Plan, key: str, folder: Path) -> tuple[Case, Solution]:
     if case.key != key:
         raise StudyError(f"{path}: should hold {label} ({key}) but holds case {case.key}")
     return case, solution
+
+
+def status(key: str, label: str) -> str:
+    """Status in the record of a case, or why there is none: ``not solved``, ``damaged``."""
+    if not path_of(key).exists():
+        return "not solved"
+    try:
+        return read_one(key, label)[1].status.value
+    except StudyError:
+        return "damaged"

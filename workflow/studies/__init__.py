@@ -16,13 +16,13 @@ from functools import cache, cached_property
 from pathlib import Path
 from types import ModuleType
 
-from solver import record
 from solver.case import Case
 from solver.record import Solution
 from workflow import records
 from workflow.aside import aside
 from workflow.config import load
 from workflow.plan import mesh_file
+from workflow.study_error import StudyError, choices
 
 FIGURES = {"robustness": ("robustness", "robustness_worst"), "claims": ()}
 
@@ -50,7 +50,9 @@ class Solved:
 
 
 def module(name: str) -> ModuleType:
-    """The module of a study."""
+    """The module of a study; raises StudyError if there is none."""
+    if name not in FIGURES:
+        raise StudyError(f"{name}: there is no such study\n  allowed: {choices(name, FIGURES)}")
     return importlib.import_module(f"workflow.studies.{name}")
 
 
@@ -66,13 +68,13 @@ def evaluate(name: str, study_file: str, table: Path, figures: Path) -> None:
 
     Raises
     ------
-    NoRecord
+    StudyError
         If a record is missing, damaged, or that of another case.
     """
     from workflow.figures import style
 
     solved = [
-        Solved(asked, record.read(records.path_of(asked.case.key))[1])
+        Solved(asked, records.read_one(asked.case.key, asked.label)[1])
         for asked in cases(name, study_file)
     ]
     rows = module(name).table(solved)
