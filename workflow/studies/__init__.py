@@ -24,7 +24,7 @@ from workflow.config import load
 from workflow.plan import mesh_file
 from workflow.study_error import StudyError, choices
 
-FIGURES = {"robustness": ("robustness", "robustness_worst"), "claims": ()}
+FIGURES = {"robustness": ("robustness", "robustness_worst"), "claims": (), "effects": ("effects",)}
 
 
 @dataclass(frozen=True)
