@@ -3,6 +3,7 @@
 import ctypes
 import errno
 import os
+import re
 import resource
 import shutil
 import signal
@@ -14,6 +15,8 @@ from pathlib import Path
 EDP = Path(__file__).parent / "edp"
 DEBIAN_PLUGINS = Path("/usr/lib/freefem++")  # where Debian puts them; its program looks elsewhere
 FROM_OUTSIDE = {-signal.SIGKILL, -signal.SIGTERM, -signal.SIGINT, -signal.SIGHUP}
+CHECK_ANSWER, CHECK_TIME = "FreeFEM is ready: 2", 20.0  # s
+LONGEST = 200  # characters of what a broken FreeFEM says
 LOG_TAIL = 15  # lines of the log that a message quotes
 MIB = 1024**2
 SIZES = {"unknowns"}  # parts of a usage that do not add up
@@ -90,6 +93,44 @@ def executable() -> str:
     if found is None:
         raise FreeFemError("FreeFem++ is not on PATH; ./setup.sh installs it")
     return found
+
+
+def check() -> None:
+    """Run a program that loads every plugin the models need and adds two numbers (30 ms).
+
+    Raises
+    ------
+    FreeFemError
+        If FreeFEM or a plugin is missing or does not work, with what to do in a few lines.
+    """
+    found = command("check.edp", {})
+    try:
+        done = subprocess.run(
+            found,
+            env=environment(),
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=CHECK_TIME,
+            check=False,
+        )
+    except OSError as error:
+        raise FreeFemError(f"{found[0]} cannot be run ({error.strerror})") from error
+    except subprocess.TimeoutExpired as error:
+        raise FreeFemError(f"{found[0]} hangs: it does not add 1 and 1") from error
+    if done.returncode == 0 and CHECK_ANSWER in done.stdout:
+        return
+    said = done.stdout + done.stderr
+    missing = re.search(r"Load error: (\S+)", said)
+    if missing:
+        raise FreeFemError(
+            f"{found[0]} does not find its plugin {missing[1]}; ./setup.sh installs Debian's, "
+            "FF_LOADPATH names their folder"
+        )
+    said = " ".join(filter(str.isprintable, said.split()))[:LONGEST]
+    how = explain(done.returncode) if done.returncode else "It does not add 1 and 1"
+    raise FreeFemError(f"{found[0]} does not work. {how}: {said or 'it says nothing'}")
 
 
 def command(program: str, flags: dict[str, str | float]) -> list[str]:

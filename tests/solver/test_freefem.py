@@ -1,6 +1,7 @@
 """Running FreeFEM: what it is given, how it ends, and that nothing of it survives its limits."""
 
 import os
+import re
 import signal
 import time
 from pathlib import Path
@@ -179,3 +180,59 @@ def test_what_a_program_says_of_its_cost(run, tmp_path):
     assert both.parts == {"factor_seconds": 0.5, "unknowns": 62}
     assert both.peak_memory == 12.5
     assert both.seconds == 2 * usage.seconds
+
+
+def test_the_check_finds_nothing_wrong():
+    start = time.monotonic()
+    freefem.check()
+    assert time.monotonic() - start < 2
+
+
+def test_the_check_loads_what_the_models_load():
+    loads = {
+        name: set(re.findall(r'^load "(\w+)"', path.read_text(), re.MULTILINE))
+        for path in EDP.iterdir()
+        for name in [path.name]
+    }
+    assert loads.pop("check.edp") == set().union(*loads.values())
+
+
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        ("echo rubbish", "does not work. It does not add 1 and 1: rubbish"),
+        ("head -c 10000 /dev/urandom", "does not add 1 and 1"),
+        ("true", "it says nothing"),
+        ("exit 3", "status 3"),
+        ("kill -SEGV $$", "SIGSEGV"),
+        ("echo Load error: Element_QF; exit 2", "does not find its plugin Element_QF"),
+        ("exec sleep 60", "hangs"),
+    ],
+)
+def test_a_broken_freefem_is_found(tmp_path, monkeypatch, script, said):
+    program = tmp_path / "FreeFem++"
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    monkeypatch.setattr(freefem, "CHECK_TIME", 0.5)
+    with pytest.raises(FreeFemError) as found:
+        freefem.check()
+    assert said in str(found.value)
+    assert str(program) in str(found.value)
+    assert "\n" not in str(found.value)
+    assert len(str(found.value)) < 400
+
+
+def test_a_freefem_without_plugins_is_found(tmp_path, monkeypatch):
+    monkeypatch.setenv("FF_LOADPATH", str(tmp_path))
+    with pytest.raises(FreeFemError, match=r"plugin gmsh.*setup\.sh"):
+        freefem.check()
+
+
+def test_a_freefem_that_cannot_be_started_is_found(tmp_path, monkeypatch):
+    program = tmp_path / "FreeFem++"
+    program.write_bytes(b"\x7fELF")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(FreeFemError, match=r"cannot be run \(Exec format error\)"):
+        freefem.check()

@@ -5,6 +5,7 @@
 from snakemake.logging import logger
 from snakemake.settings.enums import Quietness
 
+from solver import freefem
 from workflow import run_lock
 from workflow.progress import Progress, is_no_chatter
 
@@ -36,8 +37,18 @@ def follow():
             handler.addFilter(is_no_chatter)
 
 
+def check_freefem():
+    """Stop before anything runs if a case needs FreeFEM and it does not work."""
+    if any(asked.mesh for asked in solves(workflow.dag.needrun_jobs()).values()):
+        try:
+            freefem.check()
+        except freefem.FreeFemError as error:
+            sys.exit(str(error))
+
+
 onstart:
     run_lock.take(Path(".snakemake/run.lock"))
+    check_freefem()
     follow()
 
 
