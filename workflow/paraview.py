@@ -2,7 +2,8 @@
 
 Points are reference positions (R, Z, 0) in mm with the displacement as a vector, so "Warp By
 Vector" shows the deformed wall; a solid has Cauchy stress and principal stresses in MPa at the
-corners of each triangle (no two triangles share a point, since stress is discontinuous).
+corners of each triangle (no two triangles share a point, since stress is discontinuous). A cell of
+the braid is a piece of the tube in x, y, z, with the stress of its rubber and its threads.
 """
 
 from pathlib import Path
@@ -15,8 +16,10 @@ from workflow.aside import aside
 from workflow.plan import Plan
 from workflow.study_error import StudyError
 
-MODELS = ("membrane", "solid")
+MODELS = ("membrane", "solid", "cell")
 COMPONENTS = ("rr", "rz", "zz", "tt")
+CELL_COMPONENTS = ("rr", "tt", "zz", "rt", "tz", "rz")
+THREADS = ("thread_stretch_1", "thread_stretch_2", "thread_density_1", "thread_density_2")
 
 
 def files(plan: Plan) -> dict[str, tuple[str, int]]:
@@ -55,11 +58,17 @@ def write(path: Path, state: int, output: Path) -> None:
         if fields is None:
             beside.touch()
             return
-        points, cells, data = _line(fields) if "meridian" in fields else _wall(fields)
+        points, cells, data = _parts(fields)
         meshio.Mesh(points, cells, point_data=data).write(beside, file_format="vtu")
 
 
 Parts = tuple[NDArray[np.float64], dict[str, NDArray[np.int64]], dict[str, NDArray[np.float64]]]
+
+
+def _parts(fields: dict[str, NDArray[np.float64]]) -> Parts:
+    if "meridian" in fields:
+        return _line(fields)
+    return _cell(fields) if "threads" in fields else _wall(fields)
 
 
 def _line(fields: dict[str, NDArray[np.float64]]) -> Parts:
@@ -81,6 +90,25 @@ def _wall(fields: dict[str, NDArray[np.float64]]) -> Parts:
     data |= {f"stress_{c}": fields["stress"][:, k] for k, c in enumerate(COMPONENTS)}
     data |= {"largest_principal_stress": largest, "smallest_principal_stress": smallest}
     return points, {"triangle": np.arange(len(points)).reshape(-1, 3)}, data
+
+
+def _cell(fields: dict[str, NDArray[np.float64]]) -> Parts:
+    from workflow.figures.stress import principal_of_six
+
+    before, after = (_cartesian(fields["corners"][:, k : k + 3]) for k in (0, 3))
+    principal = principal_of_six(fields["stress"])
+    data = {"displacement": after - before}
+    data |= {f"stress_{c}": fields["stress"][:, k] for k, c in enumerate(CELL_COMPONENTS)}
+    data |= {"largest_principal_stress": principal[:, 2]}
+    data |= {"smallest_principal_stress": principal[:, 0]}
+    data |= {name: fields["threads"][:, k] for k, name in enumerate(THREADS)}
+    return before, {"tetra": np.arange(len(before)).reshape(-1, 4)}, data
+
+
+def _cartesian(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """x, y, z of rows radius, angle, height."""
+    r, t, z = rows.T
+    return np.column_stack([r * np.cos(t), r * np.sin(t), z])
 
 
 def _places(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

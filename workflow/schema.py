@@ -23,8 +23,8 @@ NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}")
 NAME_RULE = "letters, digits, _ . and -, at most 64, not beginning with . or -"
 QUANTITIES = {
     # beyond the states, which every record has: models that can give it
-    "stress": ("solid",),
-    "deformed_shape": ("membrane", "solid"),
+    "stress": ("solid", "cell"),
+    "deformed_shape": ("membrane", "solid", "cell"),
     "threshold_pressure": MODELS,  # of zero force, on an isometric path
     "free_contraction": MODELS,  # of zero force, on an isobaric path
 }

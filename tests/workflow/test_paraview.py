@@ -71,3 +71,28 @@ def test_a_damaged_record_is_named(recorded, tmp_path):
 def test_only_scenes_that_ask_for_stress_have_files():
     files = paraview.files(plan(load(CONFIG)))
     assert sorted(files) == [f"dmsp20_solid_fine_isobaric_{p}_0.1.vtu" for p in (0.2, 0.3, 0.4)]
+
+
+def test_a_cell_comes_back_as_a_piece_of_the_tube(tmp_path, make_case):
+    path = LoadPath(kind="isobaric", held=0.3, stops=(0.1,))
+    before = np.array([[10, 0, 0], [12, 0, 0], [10, 0.1, 0], [10, 0, 2.4]], dtype=float)
+    fields = {
+        "corners": np.hstack([before, before * [1.5, 1, 0.9]]),
+        "stress": np.tile([-0.3, 1.0, 0.2, 0, 0, 0], (4, 1)),
+        "threads": np.ones((4, 4)),
+    }
+    solution = Solution(
+        status=CaseStatus.CONVERGED,
+        reason="",
+        states=unreached(1),
+        state_status=[StateStatus.NOT_REACHED],
+        fields={0: fields},
+    )
+    record.write(tmp_path / "c.h5", make_case(model="cell", path=path, fields_at=(0.1,)), solution)
+    paraview.write(tmp_path / "c.h5", 0, tmp_path / "c.vtu")
+    mesh = meshio.read(tmp_path / "c.vtu")
+    assert mesh.cells_dict["tetra"].tolist() == [[0, 1, 2, 3]]
+    assert mesh.points[2] == pytest.approx([10 * np.cos(0.1), 10 * np.sin(0.1), 0])
+    moved = mesh.points + mesh.point_data["displacement"]
+    assert moved[3] == pytest.approx([15, 0, 0.9 * 2.4])
+    assert mesh.point_data["largest_principal_stress"] == pytest.approx(1.0)

@@ -15,6 +15,13 @@ def principal(stress: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     return np.maximum(mean + radius, tt), np.minimum(mean - radius, tt)
 
 
+def principal_of_six(stress: NDArray[np.float64]) -> NDArray[np.float64]:
+    """All three principal stresses, rising, of rows rr, tt, zz, rt, tz, rz; one row each."""
+    rr, tt, zz, rt, tz, rz = stress.T
+    rows = [np.stack(row, axis=-1) for row in ((rr, rt, rz), (rt, tt, tz), (rz, tz, zz))]
+    return np.asarray(np.linalg.eigvalsh(np.stack(rows, axis=-1)))
+
+
 def wall(fields: dict[str, NDArray[np.float64]]) -> pd.DataFrame:
     """The corners of all triangles, three rows each, with their principal stresses."""
     table = pd.DataFrame(fields["corners"], columns=SECTION)

@@ -24,7 +24,12 @@ from workflow.config import load
 from workflow.plan import mesh_file
 from workflow.study_error import StudyError, choices
 
-FIGURES = {"robustness": ("robustness", "robustness_worst"), "claims": (), "effects": ("effects",)}
+FIGURES = {
+    "robustness": ("robustness", "robustness_worst"),
+    "claims": (),
+    "effects": ("effects",),
+    "threads": ("threads", "threads_correction"),
+}
 
 
 @dataclass(frozen=True)
