@@ -29,6 +29,7 @@ FIGURES = {
     "claims": (),
     "effects": ("effects",),
     "threads": ("threads", "threads_correction"),
+    "sensitivity": ("sensitivity",),
 }
 
 
