@@ -17,6 +17,7 @@ include: "workflow/rules/figures.smk"
 include: "workflow/rules/verdict.smk"
 include: "workflow/rules/fields.smk"
 include: "workflow/rules/studies.smk"
+include: "workflow/rules/benchmark.smk"
 include: "workflow/rules/calibrate.smk"
 
 

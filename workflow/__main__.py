@@ -62,6 +62,10 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--name", required=True)
     entry.add_argument("--table", type=Path, required=True)
     entry.add_argument("--figures", type=Path, default=Path("results/figures"), help="folder")
+    entry = add(_benchmark, "Measure what the accuracy study costs on this machine.")
+    entry.add_argument("--runs", type=int, default=3, help="of every case; medians are taken")
+    entry.add_argument("--costs", type=Path, default=Path("results/cost.csv"))
+    entry.add_argument("--table", type=Path, default=Path("results/tables/benchmark.csv"))
     entry = add(_failures, "List what failed; status 1 if anything did.", study=False)
     entry.add_argument("--table", type=Path, default=FAILURES)
     entry = add(_retry, "Delete the records of failed cases, so that they are solved again.")
@@ -159,6 +163,13 @@ def _study(given: argparse.Namespace) -> int:
     from workflow import studies
 
     studies.evaluate(given.name, str(given.study), given.table, given.figures)
+    return 0
+
+
+def _benchmark(given: argparse.Namespace) -> int:
+    from workflow import benchmark
+
+    benchmark.make(given.study, given.runs, given.costs, given.table)
     return 0
 
 

@@ -27,6 +27,7 @@ from workflow.study_error import StudyError, choices
 FIGURES = {
     "robustness": ("robustness", "robustness_worst"),
     "claims": (),
+    "accuracy": ("accuracy", "accuracy_orders"),
     "effects": ("effects",),
     "threads": ("threads", "threads_correction"),
     "sensitivity": ("sensitivity",),

@@ -1,0 +1,23 @@
+# What the accuracy study costs on this machine: snakemake --cores 2 benchmark
+#
+#   in   the table of the study, so that its figure has both
+#   out  results/cost.csv               medians of several runs one after the other; workflow/benchmark.py
+#        results/tables/benchmark.csv   how cost grows
+#        results/figures/accuracy.png   drawn again with these costs
+#
+# It has no outputs for Snakemake: whoever asks for it wants it measured again.
+
+
+rule benchmark:
+    input:
+        "results/tables/accuracy.csv",
+    log:
+        "results/logs/benchmark.log",
+    threads: workflow.cores  # nothing else runs beside it
+    params:
+        study=STUDY,
+    message:
+        "Measuring what accuracy costs"
+    shell:
+        "python -m workflow benchmark --study {params.study:q} 2> >(tee {log:q} >&2)"
+        " && python -m workflow study --study {params.study:q} --name accuracy --table {input:q}"
