@@ -16,7 +16,7 @@ EDP = Path(__file__).parent / "edp"
 DEBIAN_PLUGINS = Path("/usr/lib/freefem++")  # where Debian puts them; its program looks elsewhere
 FROM_OUTSIDE = {-signal.SIGKILL, -signal.SIGTERM, -signal.SIGINT, -signal.SIGHUP}
 CHECK_ANSWER, CHECK_TIME = "FreeFEM is ready: 2", 20.0  # s
-LONGEST = 200  # characters of what a broken FreeFEM says
+LONGEST = 200  # characters of a line that is quoted
 LOG_TAIL = 15  # lines of the log that a message quotes
 MIB = 1024**2
 SIZES = {"unknowns"}  # parts of a usage that do not add up
@@ -128,7 +128,7 @@ def check() -> None:
             f"{found[0]} does not find its plugin {missing[1]}; ./setup.sh installs Debian's, "
             "FF_LOADPATH names their folder"
         )
-    said = " ".join(filter(str.isprintable, said.split()))[:LONGEST]
+    said = readable(" ".join(said.split()))
     how = explain(done.returncode) if done.returncode else "It does not add 1 and 1"
     raise FreeFemError(f"{found[0]} does not work. {how}: {said or 'it says nothing'}")
 
@@ -229,7 +229,12 @@ def tail(log: Path) -> str:
     """The last lines of a log."""
     if not log.exists():
         return ""
-    return "\n".join(log.read_text(errors="replace").splitlines()[-LOG_TAIL:])
+    return "\n".join(map(readable, log.read_text(errors="replace").splitlines()[-LOG_TAIL:]))
+
+
+def readable(line: str) -> str:
+    """A line of what may be rubbish, which a record can hold (no NUL) and a terminal survives."""
+    return "".join(c if c.isprintable() or c == "\t" else "\ufffd" for c in line[:LONGEST])
 
 
 def _limit(limits: Limits) -> None:

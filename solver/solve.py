@@ -94,7 +94,7 @@ def _follow(
             status, reason = CaseStatus.SOLVER_ERROR, str(error)
         ended = work / "reason.txt"
         if status is None and ended.exists():
-            reason = ended.read_text(errors="replace").strip()
+            reason = freefem.readable(ended.read_text(errors="replace").strip())
         unknowns = 0
         try:
             unknowns = _number(work / "unknowns.txt")

@@ -1,15 +1,18 @@
-"""One run at a time in a folder; the lock of a run that was killed is no lock."""
+"""One run at a time in a folder; what a killed run left does not disturb the next."""
 
 import fcntl
 import os
+import re
+import signal
 import sys
 from pathlib import Path
 
+MARK = "MUSCLE_RUN"  # environment variable of all that a run starts: the lock it holds
 _held = []  # open files: a lock lives as long as its file is open in a living process
 
 
 def take(path: Path) -> None:
-    """Lock a file until this process ends, however it ends.
+    """Lock a file until this process ends, however it ends, and end what a killed run left.
 
     The kernel drops the lock with the process, so nothing stale can be left (Snakemake's own
     locks are files that outlive a kill; the profile turns them off).
@@ -31,3 +34,24 @@ def take(path: Path) -> None:
     file.write(f"{os.getpid()}\n")
     file.flush()
     _held.append(file)
+    os.environ[MARK] = str(path.resolve())
+    _end_orphans(os.environ[MARK])
+
+
+def _end_orphans(lock: str) -> None:
+    """End jobs that outlived their run, before their results come in between."""
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            marks = (process / "environ").read_bytes().split(b"\0")
+            if f"{MARK}={lock}".encode() in marks and int(process.name) != os.getpid():
+                os.kill(int(process.name), signal.SIGKILL)
+        except OSError:
+            continue  # ended, or somebody else's
+
+
+def tidy(folder: Path) -> None:
+    """Delete files that processes which are gone were writing beside their place."""
+    for path in folder.rglob(".*"):
+        writer = re.search(r"\.(\d+)(\.|$)", path.name)
+        if writer and path.is_file() and not Path("/proc", writer[1]).exists():
+            path.unlink(missing_ok=True)

@@ -65,11 +65,13 @@ RUBBISH = {
 
 
 @pytest.mark.parametrize("script", RUBBISH)
-def test_rubbish_is_a_solver_error(solved_by, script):
+def test_rubbish_is_a_solver_error(solved_by, script, case, tmp_path):
     solution = solved_by(script)
     assert solution.status is CaseStatus.SOLVER_ERROR
     assert RUBBISH[script] in solution.reason
     assert solution.state_status == [StateStatus.NOT_REACHED] * 2
+    record.write(tmp_path / "case.h5", case, solution)  # whatever it said
+    assert record.read(tmp_path / "case.h5")[1].reason == solution.reason
 
 
 def test_one_that_hangs_is_stopped(solved_by):

@@ -111,7 +111,7 @@ def solver_sources(wildcards):
         f for model, files in MODEL_SOURCES.items() if model != case.case.model for f in files
     ]
     geometry = [f"geometry/{name}.py" for name in ("muscle", "refusal", "cell", "seal")]
-    return sources("solver/*.py", *geometry, *edp, without=others)
+    return sources("solver/*.py", *geometry, *edp, without=[*others, "solver/edp/check.edp"])
 
 
 def figures():

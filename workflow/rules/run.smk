@@ -48,6 +48,7 @@ def check_freefem():
 
 onstart:
     run_lock.take(Path(".snakemake/run.lock"))
+    run_lock.tidy(Path("results"))
     check_freefem()
     follow()
 

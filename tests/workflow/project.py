@@ -1,0 +1,140 @@
+"""A small copy of the project with its own study and two figures of a few points."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PARTS = ("Snakefile", "config", "geometry", "profiles", "solver", "workflow")
+STUDY = """\
+materials:
+  nbr: {c10: 0.345083, c01: 0.083805}
+  silicone: {c10: 0.028, c01: 0.018}
+muscles:
+  one:
+    inner_diameter: 20
+    wall_thickness: 2
+    length: 60
+    layer_depths: [0.3, 0.9]
+    threads: 60
+    lead: 144
+    thread_stiffness: 315
+    material: nbr
+  soft: {base: one, material: silicone}
+numerics:
+  section: {cap_step: 2, growth: 2}
+limits: {wall_time: 60, memory: 2000}
+scenes:
+  fig90:
+    path: isobaric
+    muscles: [one, soft]
+    pressure: [0.2]
+    contraction: [0, 0.05]
+    models: [geometric, cylinder]
+  fig91:
+    path: isobaric
+    muscles: [one]
+    pressure: [0.2]
+    contraction: [0, 0.05]
+    models: [membrane, solid]
+"""
+FIGURE = '''\
+"""Some points."""
+import pandas as pd
+from matplotlib.figure import Figure
+
+
+def table(data):
+    return pd.DataFrame([(model, held) for _, model, _, held, _, _ in data.solutions])
+
+
+def draw(table):
+    return Figure()
+'''
+
+
+class Project:
+    """A copy of the project."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        folder.mkdir(parents=True)
+        for part in PARTS:
+            ignored = shutil.ignore_patterns("fig[0-9]*", "__pycache__")
+            source = ROOT / part
+            if source.is_dir():
+                shutil.copytree(source, folder / part, ignore=ignored)
+            else:
+                shutil.copy(source, folder / part)
+        for name in ("fig90", "fig91"):
+            self.write(f"workflow/figures/{name}.py", FIGURE)
+        self.write("config/config.yaml", STUDY)
+
+    def write(self, path, text):
+        (self.folder / path).write_text(text)
+
+    def read(self, path):
+        return (self.folder / path).read_text()
+
+    def copy(self, folder):
+        """A project in the same state, as far as Snakemake can tell."""
+        made = object.__new__(Project)
+        made.folder = folder
+        shutil.copytree(self.folder, folder, ignore=shutil.ignore_patterns("__pycache__"))
+        return made
+
+    def results(self):
+        """Bytes of all results that must be the same each time."""
+        found = (p for p in (self.folder / "results").rglob("*") if p.is_file())
+        names = {str(p.relative_to(self.folder / "results")): p for p in found}
+        return {
+            name: path.read_bytes()
+            for name, path in names.items()
+            if not name.startswith(("logs/", "cost/"))
+        }
+
+    def clear(self):
+        """As before the first run."""
+        for name in ("results", ".snakemake"):
+            shutil.rmtree(self.folder / name, ignore_errors=True)
+
+    def start(self, *arguments, program=("snakemake", "--cores", "2"), path=None, **options):
+        """A run; ``path`` comes first on PATH."""
+        search = f"{path}:{os.environ['PATH']}" if path else os.environ["PATH"]
+        return subprocess.Popen(
+            [sys.executable, "-m", *program, *arguments],
+            cwd=self.folder,
+            env=os.environ | {"PATH": search},
+            **options,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
+
+    def run(self, *arguments, **options):
+        """Exit status and output."""
+        process = self.start(*arguments, **options)
+        output, _ = process.communicate(timeout=300)
+        return process.returncode, output
+
+    def planned(self):
+        """What would run, by the messages of the jobs; meshes without their digest."""
+        return set(self.reasons())
+
+    def reasons(self):
+        """What would run, and the sources that are the reason for it."""
+        status, output = self.run("--dry-run", "--quiet", "host")
+        assert status == 0, output
+        jobs = re.findall(r"^Job \d+: (.*)\nReason: (.*)$", output, re.MULTILINE)
+        assert jobs or "Nothing to be done" in output, output
+        found = {}
+        for job, reason in jobs:
+            if not job.startswith("All is"):
+                changed = re.search(r"Updated input files: ([^;]+)", reason)
+                name = re.sub(r"^Meshing \w+", "Meshing", job)
+                found[name] = set(changed[1].split(", ")) if changed else set()
+        return found

@@ -1,0 +1,236 @@
+"""A campaign loses nothing: whatever is done to a run, the next one ends with the same bytes."""
+
+import contextlib
+import os
+import random
+import resource
+import shutil
+import signal
+import time
+from pathlib import Path
+
+import pytest
+
+from workflow.run_lock import MARK
+
+KILLED = signal.SIGKILL
+
+
+def processes(project):
+    """All that runs of a project have started and that still lives, by process number."""
+    mark = f"{MARK}={project.folder / '.snakemake/run.lock'}".encode()
+    found = {}
+    for entry in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if mark in (entry / "environ").read_bytes().split(b"\0"):
+                found[int(entry.name)] = (entry / "cmdline").read_bytes()
+    return found
+
+
+def finish(project, *arguments):
+    """A plain run, which must succeed and give the bytes of the undisturbed one."""
+    status, output = project.run(*arguments)
+    assert status == 0, output
+    assert "Traceback" not in output
+
+
+def assert_undisturbed(project, reference):
+    """Same bytes, nothing beside them, nothing that still runs."""
+    found = project.results()
+    assert found.keys() == reference.undisturbed.keys()
+    assert [name for name in found if found[name] != reference.undisturbed[name]] == []
+    assert processes(project) == {}
+
+
+def kill(project, run, chance):
+    """Kill one of: the whole group, Snakemake alone, a job or FreeFEM. Says which."""
+    jobs = processes(project)
+    freefem = [pid for pid, command in jobs.items() if b"FreeFem++" in command]
+    kind = chance.choice(["group", "snakemake", "job", "job", "freefem"])
+    with contextlib.suppress(ProcessLookupError):
+        if kind == "freefem" and freefem:
+            os.kill(chance.choice(freefem), KILLED)
+        elif kind in ("job", "freefem") and jobs:
+            os.kill(chance.choice(list(jobs)), KILLED)
+        elif kind == "group":
+            os.killpg(run.pid, KILLED)
+        else:
+            os.kill(run.pid, KILLED)
+    return kind
+
+
+def campaign(project, reference, kills, seed):
+    """Runs that are killed at random moments; then a plain one gives what it should."""
+    chance = random.Random(seed)
+    done = rounds = 0
+    while done < kills:
+        if project.results().keys() >= reference.undisturbed.keys():
+            finish(project)
+            assert_undisturbed(project, reference)
+            project.clear()
+            rounds += 1
+        run = project.start()
+        with contextlib.suppress(Exception):
+            run.communicate(timeout=chance.uniform(1, 7))
+        if run.poll() is None:
+            done += 1
+            if kill(project, run, chance) in ("job", "freefem"):
+                with contextlib.suppress(Exception):  # Snakemake lives: it may go on for a while
+                    run.communicate(timeout=chance.uniform(0, 3))
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(run.pid, KILLED)
+        run.communicate()
+    finish(project)
+    assert_undisturbed(project, reference)
+    return rounds
+
+
+@pytest.fixture
+def copy(project, tmp_path):
+    """A project in which everything has run, to do anything to."""
+    return project.copy(tmp_path / "project")
+
+
+def test_killed_at_random_moments(project, copy):
+    copy.clear()
+    campaign(copy, project, kills=4, seed=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_killed_many_times(project, copy, seed):
+    copy.clear()
+    campaign(copy, project, kills=10, seed=100 + seed)
+
+
+def test_one_core_and_a_second_run(project, copy):
+    """The second is refused while the first lives; one core gives the bytes of two."""
+    copy.clear()
+    first = copy.start(program=("snakemake", "--cores", "1"))
+    lock = copy.folder / ".snakemake/run.lock"
+    while not (lock.exists() and lock.read_text().endswith("\n")):
+        assert first.poll() is None
+        time.sleep(0.05)
+    status, output = copy.run()
+    assert status == 1
+    assert f"Another run works in this folder (process {first.pid})" in output
+    output, _ = first.communicate()
+    assert first.returncode == 0, output
+    assert_undisturbed(copy, project)
+
+
+@pytest.mark.parametrize("size", [30_000])
+def test_a_full_disk(project, copy, size):
+    copy.clear()
+    limit = (resource.RLIMIT_FSIZE, (size, size))
+    status, _ = copy.run(preexec_fn=lambda: resource.setrlimit(*limit))
+    assert status != 0
+    finish(copy)
+    assert_undisturbed(copy, project)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [0, 500, 3_000, 10_000, 60_000, 200_000])
+def test_a_full_disk_of_any_size(project, copy, size):
+    test_a_full_disk(project, copy, size)
+
+
+def corrupt(path, chance):
+    """Change a file without its date, in one of some ways."""
+    before, content = path.stat(), bytearray(path.read_bytes())
+    kind = chance.choice(["flipped", "cut", "empty", "foreign"])
+    if kind == "flipped":
+        content[chance.randrange(len(content))] ^= 1 << chance.randrange(8)
+    elif kind == "cut":
+        del content[chance.randrange(len(content)) :]
+    else:
+        content = b"" if kind == "empty" else b"something else\n"
+    path.write_bytes(content)
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+
+
+@pytest.mark.parametrize(
+    "seed", [1, *[pytest.param(s, marks=pytest.mark.slow) for s in range(2, 9)]]
+)
+def test_corrupted_files_of_each_kind(project, copy, seed):
+    """None is read as data; each that matters is named, and tried again when asked."""
+    chance = random.Random(seed)
+    results = copy.folder / "results"
+    solid = next(p for p in results.glob("cases/*.h5") if b'"model": "solid"' in p.read_bytes())
+    solid.unlink()  # is solved again, with a mesh that is no mesh any more
+    (mesh,) = results.glob("meshes/*.msh")
+    record = chance.choice(list(results.glob("cases/*.h5")))
+    for path in (mesh, record, *results.glob("cost/*"), copy.folder / ".snakemake/run.lock"):
+        corrupt(path, chance)
+    (results / "dataset.nc").unlink()
+    status, output = copy.run()
+    assert status == 1
+    assert f"results/cases/{record.name}: should hold" in output
+    assert "Traceback" not in output
+    status, output = copy.run("retry", program=("workflow",))
+    assert status == 0
+    assert "was damaged" in output
+    assert "(was mesh_failed): one solid" in output
+    finish(copy)
+    assert_undisturbed(copy, project)
+
+
+FAKE = """\
+#!/bin/sh
+case "$*" in
+  *check.edp*) exec {real} "$@" ;;
+  *membrane.edp*) {membrane} ;;
+  *) {solid} ;;
+esac
+"""
+
+
+def fake(folder, **cases):
+    """A folder with a FreeFEM that passes the check and then does something else."""
+    program = folder / "bin/FreeFem++"
+    program.parent.mkdir(exist_ok=True)
+    program.write_text(FAKE.format(real=shutil.which("FreeFem++"), **cases))
+    program.chmod(0o755)
+    return program.parent
+
+
+def test_a_solver_that_hangs_or_prints_rubbish(project, copy, tmp_path):
+    for path in (copy.folder / "results/cases").iterdir():
+        if b"section" in path.read_bytes() or b"meridian" in path.read_bytes():
+            path.unlink()
+    study = copy.read("config/config.yaml")
+    copy.write("config/config.yaml", study.replace("wall_time: 60", "wall_time: 4"))
+    path = fake(tmp_path, membrane="head -c 9999 /dev/urandom | tee states.csv", solid="sleep 600")
+    status, output = copy.run(path=path)
+    assert status == 1
+    assert "one membrane isobaric 0.2 MPa: solver_error" in output
+    assert "one solid isobaric 0.2 MPa: timeout, stopped after 4 s, the limit" in output
+    assert "2 cases failed" in output
+    assert "5 of 5 cases solved, 2 failed" in output
+    assert "failed: one solid isobaric 0.2 MPa: timeout" in output
+    assert (copy.folder / "results/dataset.nc").exists()
+    assert processes(copy) == {}
+    copy.write("config/config.yaml", study)
+    copy.run("retry", program=("workflow",))
+    finish(copy)
+    assert_undisturbed(copy, project)
+
+
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        ('exec env FF_LOADPATH=/nowhere {real} "$@"', "does not find its plugin gmsh"),
+        ("exit 1", "does not work. FreeFEM stopped with status 1"),
+    ],
+)
+def test_a_broken_freefem_stops_at_once(copy, tmp_path, script, said):
+    next((copy.folder / "results/cases").glob("*.h5")).unlink()
+    copy.write("solver/edp/newton.idp", copy.read("solver/edp/newton.idp") + "// edited\n")
+    program = tmp_path / "FreeFem++"
+    program.write_text("#!/bin/sh\n" + script.format(real=shutil.which("FreeFem++")))
+    program.chmod(0o755)
+    status, output = copy.run(path=tmp_path)
+    assert status == 1
+    assert said in output
+    assert "Traceback" not in output
+    assert "Solving" not in output
