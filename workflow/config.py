@@ -80,6 +80,7 @@ def load(path: Path | str) -> Study:
         file = StudyFile.model_validate(source.plain)
     except ValidationError as errors:
         raise source.refusal_of(errors) from None
+    source.check_values()
     rubbers = {
         name: source.checked(("materials", name), MooneyRivlin, dict(entry))
         for name, entry in file.materials.items()

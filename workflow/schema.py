@@ -28,6 +28,7 @@ QUANTITIES = {
     "threshold_pressure": MODELS,  # of zero force, on an isometric path
     "free_contraction": MODELS,  # of zero force, on an isobaric path
 }
+MOST_THREADS = 10_000  # more is a typing error
 HELD_KEY = {"isobaric": "pressure", "isometric": "contraction", "isotonic": "load"}
 SWEPT_KEY = {"isobaric": "contraction", "isometric": "pressure", "isotonic": "pressure"}
 
@@ -93,8 +94,8 @@ def _tuple_of(kind: Any) -> Any:
 
 
 def _threads(value: object) -> object:
-    if value != "none" and not is_count(value):
-        raise refusal("an integer >= 1 (per layer), or none for a bare tube")
+    if value != "none" and not (is_count(value) and value <= MOST_THREADS):
+        raise refusal(f"an integer >= 1, <= {MOST_THREADS} (per layer), or none for a bare tube")
     return value
 
 
@@ -168,8 +169,8 @@ class VariantEntry(Entry):
 class LimitsEntry(Entry):
     """What a case may use."""
 
-    wall_time: Annotated[int, Field(gt=0)] = 600  # s
-    memory: Annotated[int, Field(gt=0)] = 2000  # MB
+    wall_time: Annotated[int, Field(gt=0, le=10**7)] = 600  # s
+    memory: Annotated[int, Field(gt=0, le=10**7)] = 2000  # MB
 
 
 class Scene(Entry):

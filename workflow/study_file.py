@@ -1,6 +1,6 @@
 """The text of a study file: read without duplicate keys, and every refusal with its line."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar, get_args
@@ -51,6 +51,11 @@ class Source:
             raise StudyError(f"{path}: cannot be read ({str(error).splitlines()[0]})") from None
         except RecursionError:
             raise StudyError(f"{path}: is nested too deeply") from None
+
+    def check_values(self) -> None:
+        """Refuse a key that is there but has no value: what was meant cannot be known."""
+        for keys in _without_value(self.plain):
+            raise self.refuse(keys, None, "a value; or leave the key out")
 
     def refuse(self, keys: Keys, value: object, allowed: str) -> StudyError:
         """The error for the value of a key (None: the key is missing)."""
@@ -122,6 +127,12 @@ def _plain(node: Any) -> Any:
         if isinstance(node, kind):
             return kind(node)
     return node
+
+
+def _without_value(node: Any, keys: Keys = ()) -> Iterator[Keys]:
+    if isinstance(node, Mapping):
+        for key, value in node.items():
+            yield from [(*keys, key)] if value is None else _without_value(value, (*keys, key))
 
 
 def _readable(key: str | int) -> str:
