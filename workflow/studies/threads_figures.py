@@ -165,6 +165,6 @@ def _meshes(ax: Any, rows: pd.DataFrame) -> None:
             color="black",
             label={"discrete": "threads", "smeared": "smeared", "wire": "wire"}[str(layers)],
         )
-    ax.set(xlabel="size at the thread [thread radii]", ylabel="force [N]")
+    ax.set(xlabel="mesh size [thread radii]", ylabel="force [N]")
     ax.set_title("NBR, 0.3 MPa, 0 %")
     ax.legend(fontsize=6.5)
