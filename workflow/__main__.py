@@ -54,7 +54,8 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--tables", type=Path, default=Path("results/tables"), help="folder")
     entry.add_argument("--figures", type=Path, default=Path("results/figures"), help="folder")
     entry.add_argument("--muscles", type=Path, default=Path("results/calibration"), help="folder")
-    add(_explain, "Say which cases the scenes ask for, and which they share.")
+    add(_explain, "Say what every scene wants, what it gets and why, and which scenes share that.")
+    add(_weigh, "Write what the planner knows of effects, from the solved study of effects.")
     of_study = {"metavar": "STUDY", "help": "of this study of the models; else of the scenes"}
     entry = add(_cases, "List the cases: key, status of the record, label.")
     entry.add_argument("--name", **of_study)
@@ -85,7 +86,7 @@ def _gather(given: argparse.Namespace) -> int:
 
     plan = _plan(given)
     curves = records.curves_of_study(plan)
-    dataset.write(dataset.build(curves, plan.study.muscles), given.dataset)
+    dataset.write(dataset.build(curves, plan.study.muscles, effects=True), given.dataset)
     failures.write(plan, {curve.key: curve.solution for curve in curves}, given.failures)
     return 0
 
@@ -131,14 +132,18 @@ def _calibrate(given: argparse.Namespace) -> int:
 
 
 def _explain(given: argparse.Namespace) -> int:
-    plan = _plan(given)
-    for name, places in plan.scenes.items():
-        print(f"{name}: {len(set(places.values()))} cases")
-        for place, key in places.items():
-            case = plan.cases[key]
-            others = [scene for scene in case.scenes if scene != name]
-            stops = f"{len(case.case.path.stops)} stops"
-            print(f"  {key}  {place}, {stops}" + (f"; also {', '.join(others)}" if others else ""))
+    from workflow import explain
+
+    for line in explain.lines(_plan(given)):
+        print(line)
+    return 0
+
+
+def _weigh(given: argparse.Namespace) -> int:
+    from workflow import weights
+
+    weights.measure(str(given.study))
+    print(f"written: {weights.FILE.name}, {weights.origin()}")
     return 0
 
 

@@ -235,9 +235,9 @@ def _check_scene(source: Source, study: Study, keys: Keys, scene: Scene) -> None
             place = f"on an {scene.path} path" if scene.path else "without a path"
             needed = "must be given" if value is None else "is not used"
             raise source.refuse((*keys, key), value, f"this key {needed} {place}")
-    if (scene.models is None) != (scene.path is None):
-        allowed = "given with a path and left out without one"
-        raise source.refuse((*keys, "models"), scene.models, allowed)
+    for key in ("models", "effects", "tolerance") if scene.path is None else ():
+        if getattr(scene, key):
+            raise source.refuse((*keys, key), getattr(scene, key), "left out without a path")
     for quantity in scene.quantities:
         _check_quantity(source, (*keys, "quantities"), scene, quantity)
 

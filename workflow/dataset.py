@@ -11,6 +11,8 @@ Layout, version 1
     threshold_pressure (isometric), free_contraction (isobaric), each with its _status: of the
     state of zero force, for curves that ask for it.
     Along muscle: what the muscle is made of. Coordinates are the decimals of the study file.
+/effects     dims regime, path, effect: what leaving out an effect changes and costs, as measured by
+             the study of effects (workflow/weights.py); only in results/dataset.nc
 /reference   dim point: the force maps that figures compare with
 
 A state that is invalid_state keeps its numbers: look at status before you believe one.
@@ -33,6 +35,7 @@ from workflow.aside import aside
 from workflow.config import StudiedMuscle
 from workflow.records import Curve
 from workflow.schema import HELD_KEY, SWEPT_KEY
+from workflow.weights import group as weights_group
 
 LAYOUT = 1
 NAN = math.nan
@@ -61,9 +64,11 @@ MUSCLE = {  # coordinates along muscle: (unit, long name, value)
 }
 
 
-def build(curves: Sequence[Curve], muscles: Mapping[str, StudiedMuscle]) -> xr.DataTree:
-    """The tree of some curves."""
-    groups = {"reference": _reference()}
+def build(
+    curves: Sequence[Curve], muscles: Mapping[str, StudiedMuscle], *, effects: bool = False
+) -> xr.DataTree:
+    """The tree of some curves; with ``effects`` also what is known of leaving effects out."""
+    groups = {"reference": _reference()} | ({"effects": weights_group()} if effects else {})
     for name in HELD_KEY:
         found = [curve for curve in curves if curve.place.group == name]
         if found:

@@ -13,7 +13,8 @@ from geometry import section
 from geometry.muscle import Muscle
 from solver.case import MESHED, Case, digest
 from solver.load_path import LoadPath
-from workflow.config import Study
+from workflow import planner
+from workflow.config import Study, Variant
 from workflow.schema import HELD_KEY, SWEPT_KEY, Scene
 
 FIELDS = {"stress", "deformed_shape"}
@@ -165,17 +166,33 @@ def _curves(study: Study, name: str, scene: Scene) -> Iterator[tuple[Place, Case
     """What one scene asks for."""
     if scene.path is None:
         return
+    choice = planner.choose(study, scene)
+    _check_models(study, name, scene, choice)
     for muscle in scene.muscles:
-        for model in scene.models:
-            for variant in scene.variants:
+        for model in choice.models:
+            for label, variant in choice.variants.items():
                 for held in scene.held:
-                    place = Place(scene.path, muscle, model, variant, held)
-                    yield place, _case(study, name, scene, place)
+                    place = Place(scene.path, muscle, model, label, held)
+                    yield place, _case(study, name, scene, place, variant)
 
 
-def _case(study: Study, name: str, scene: Scene, place: Place) -> Case:
+def _check_models(study: Study, name: str, scene: Scene, choice: planner.Choice) -> None:
+    """Refuse effects that a named model, or every model, cannot have."""
+    found = {e.rung.model: e.refused for e in choice.estimates}
+    if choice.models:
+        found = {model: planner.refusal(model, scene) for model in choice.models}
+    reasons = [f"{model} {reason}" for model, reason in found.items() if reason]
+    if reasons:
+        key = "effects" if scene.effects else "quantities"
+        allowed = f"what one model can have; here {'; '.join(reasons)}"
+        raise study.source.refuse(("scenes", name, key), getattr(scene, key), allowed)
+
+
+def _case(study: Study, name: str, scene: Scene, place: Place, variant: Variant) -> Case:
     """The case that a scene asks for at a place."""
-    muscle, variant = study.muscles[place.muscle], study.variants[place.variant]
+    muscle, effects = study.muscles[place.muscle], variant.effects
+    if scene.effects:
+        effects = planner.readable(place.model, effects)
     keys, checked = ("scenes", name), study.source.checked
     # Eq. (1) has its zero of force at no pressure but 0, so no threshold
     has_zero = place.model != "geometric" or place.group == "isobaric"
@@ -199,7 +216,7 @@ def _case(study: Study, name: str, scene: Scene, place: Place) -> Case:
             "thread": muscle.thread,
             "path": path,
             "model": place.model,
-            "effects": variant.effects,
+            "effects": effects,
             "numerics": variant.numerics,
             "fields_at": scene.swept if FIELDS.intersection(scene.quantities) else (),
         },

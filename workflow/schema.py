@@ -12,17 +12,26 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from pydantic_core import PydanticCustomError
 
 from geometry.refusal import is_count
-from solver.case import MODELS
-from solver.effects import Effects
+from solver.case import MESHED, MODELS
+from solver.effects import EFFECTS, READ_BY, Effects
 from solver.load_path import PathKind
 from solver.numerics import KINDS
 from workflow.grid import expand
 from workflow.study_error import choices, shown
 
+BUILT = tuple(model for model in MODELS if model != "geometric")
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}")
 NAME_RULE = "letters, digits, _ . and -, at most 64, not beginning with . or -"
 QUANTITIES = {
-    # beyond the states, which every record has: models that can give it
+    # models that can give it; those from stress on are solved for or written only when asked for
+    "force": MODELS,
+    "contraction": MODELS,
+    "inner_diameter": MODELS,
+    "outer_diameter": BUILT,
+    "thread_stretch": BUILT,
+    "volume": tuple(MESHED),
+    "stiffness": tuple(MESHED),
+    "twist": READ_BY["twist"],
     "stress": ("solid", "cell"),
     "deformed_shape": ("membrane", "solid", "cell"),
     "threshold_pressure": MODELS,  # of zero force, on an isometric path
@@ -183,6 +192,8 @@ class Scene(Entry):
     load: Values | None = None  # N
     models: _some_of(*MODELS) | None = None
     variants: Names = ("default",)
+    effects: dict[_one_of(*EFFECTS), _one_of("on", "off")] = {}
+    tolerance: Annotated[float, Field(gt=0, lt=1)] | None = None  # share of the largest value
     quantities: _some_of(*QUANTITIES) = ()
 
     @property

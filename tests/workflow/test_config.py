@@ -131,7 +131,7 @@ REFUSED = [
     ("[default, paper]", "[defualt]", FIG + "variants", "nearest: default"),
     ("[membrane, solid]", "[membran]", FIG + "models", "nearest: membrane"),
     ("[membrane, solid]", "[solid, solid]", FIG + "models", "twice"),
-    ("    models: [membrane, solid]\n", "", FIG + "models", "with a path"),
+    ("    models: [membrane, solid]\n", "    tolerance: 2\n", FIG + "tolerance", "less than 1"),
     ("[one]\n", "[bare]\n    quantities: [stress]\n", FIG + "quantities", "only by solid"),
     (
         "    muscles:",

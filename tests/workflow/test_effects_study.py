@@ -31,7 +31,7 @@ def test_a_pair_differs_in_one_thing(effect):
     on, off = (SETUPS[name] for name in SWITCHES[effect])
     moved = [name for name in vars(on.effects) if vars(on.effects)[name] != vars(off.effects)[name]]
     differences = [*moved, *["model"] * (on.model != off.model)]
-    differences += ["mesh"] * (on.refinement != off.refinement)
+    differences += ["mesh"] * (on.mesh != off.mesh)
     assert len(differences) == 1
 
 
@@ -64,6 +64,7 @@ def test_changes_and_savings(asked):
     ).set_index("effect")
     assert rows.loc["cap_geometry", "force"] == pytest.approx(0.02)
     assert rows.loc["cap_geometry", "missing"] == 2
+    assert rows.loc["cap_geometry", "largest"] == 100
     assert rows.loc["end_caps", "force"] == pytest.approx(48 / 98, abs=1e-4)
     assert rows.loc["end_caps", "missing"] == 0
     assert rows.loc["cap_geometry", "work_with"] == 10 * 7

@@ -10,7 +10,7 @@ rule gather:
     input:
         records=[record_of(case) for case in PLAN.cases],
         reference=sources("config/reference/*.csv"),
-        sources=sources("workflow/*.py"),
+        sources=sources("workflow/*.py", "workflow/weights.csv"),
     output:
         dataset="results/dataset.nc",
         failures="results/tables/failures.csv",

@@ -83,7 +83,9 @@ def _stiffened(study: Study, stiffness: float) -> Study:
         for name, muscle in study.muscles.items()
     }
     scenes = {
-        name: scene.model_copy(update={"models": tuple(m for m in scene.models if _fast(scene, m))})
+        name: scene.model_copy(
+            update={"models": tuple(m for m in scene.models or () if _fast(scene, m))}
+        )
         for name, scene in study.scenes.items()
         if scene.path is not None
     }

@@ -6,11 +6,9 @@ the normal condition and four corners; each is followed at constant pressure, co
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from geometry.meridian import MeridianMesh
-from geometry.section import SectionMesh
 from solver.case import Case
 from solver.effects import Effects
 from solver.load_path import LoadPath, PathKind
@@ -19,6 +17,7 @@ from solver.numerics import Numerics
 from workflow.config import Study
 from workflow.studies import Solved, StudyCase
 from workflow.studies.effects_table import table
+from workflow.weights import MESHES
 
 __all__ = ["cases", "draw", "table"]
 
@@ -54,7 +53,7 @@ class Regime:
 REGIMES = {
     "normal": Regime(),
     "low pressure": Regime(pressure=0.1, highest=0.16, load=50.0),
-    "high contraction": Regime(furthest=0.24, contraction=0.2, load=50.0),
+    "high contraction": Regime(furthest=0.24, pressure=0.2, contraction=0.2, load=50.0),
     "thick silicone": Regime(muscle=THICK_SILICONE),
     "stiff threads": Regime(stiffness=STIFF),
 }
@@ -66,15 +65,16 @@ class Setup:
 
     model: str
     effects: Effects = field(default_factory=Effects)
-    refinement: int = 1
+    mesh: str = "default"
 
 
 SETUPS = {
-    "solid, finer": Setup(model="solid", refinement=2),
+    "solid, finer": Setup(model="solid", mesh="finer"),
     "solid": Setup(model="solid"),
+    "solid, coarser": Setup(model="solid", mesh="coarser"),
     "solid, incompressible": Setup(model="solid", effects=Effects(volume="incompressible")),
     "solid, two-way": Setup(model="solid", effects=Effects(threads="two_way")),
-    "membrane, finer": Setup(model="membrane", refinement=2),
+    "membrane, finer": Setup(model="membrane", mesh="finer"),
     "membrane": Setup(model="membrane"),
     "membrane, one radius": Setup(model="membrane", effects=Effects(wall="one_radius")),
     "cylinder": Setup(model="cylinder"),
@@ -117,8 +117,5 @@ def _case(study: Study, regime: Regime, setup: Setup, path: LoadPath) -> Case:
         path=path,
         model=setup.model,
         effects=setup.effects,
-        numerics=Numerics(
-            section=SectionMesh(refinement=setup.refinement),
-            meridian=MeridianMesh(refinement=setup.refinement),
-        ),
+        numerics=replace(Numerics(), **MESHES[setup.mesh]),
     )

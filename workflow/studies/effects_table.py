@@ -14,6 +14,7 @@ from workflow.studies import Solved
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 SWITCHES = {  # what is left out: (setup with it, setup without); see workflow/studies/effects.py
     "mesh of solid": ("solid, finer", "solid"),
+    "coarse mesh of solid": ("solid, finer", "solid, coarser"),
     "compressibility": ("solid", "solid, incompressible"),
     "slackening": ("solid", "solid, two-way"),
     "cap_geometry": ("solid", "membrane"),
@@ -33,7 +34,8 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
     ``force``, ``diameter``, ``contraction`` are the largest change along the path, as a share of
     the largest value along it with the effect on (contraction under a load only, force not there).
     ``threshold`` is the change of the threshold pressure, as a share of it. ``missing`` counts
-    states that exist with the effect and not without. ``work`` is unknowns times iterations; 1 a
+    states that exist with the effect and not without. ``held`` is what the path holds, ``largest``
+    the force or contraction that changes are a share of. ``work`` is unknowns times iterations; 1 a
     state where a model solves by itself.
     """
     found: dict[tuple[str, str], dict[str, Solved]] = {}
@@ -43,14 +45,15 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
         found.setdefault(place, {})[str(tags["setup"])] = entry
     return pd.DataFrame(
         [
-            {"regime": regime, "path": path, "effect": effect} | _row(setups, *pair)
+            {"regime": regime, "path": path, "effect": effect} | row(setups, *pair)
             for (regime, path), setups in found.items()
             for effect, pair in SWITCHES.items()
         ]
     )
 
 
-def _row(setups: Mapping[str, Solved], with_it: str, without: str) -> dict[str, Any]:
+def row(setups: Mapping[str, Solved], with_it: str, without: str) -> dict[str, Any]:
+    """What leaving out one effect changes and saves."""
     on, off = setups[with_it], setups[without]
     path = on.asked.case.path
     valid = _valid(on.solution), _valid(off.solution)
@@ -66,6 +69,8 @@ def _row(setups: Mapping[str, Solved], with_it: str, without: str) -> dict[str, 
         "with": with_it,
         "without": without,
         **{name: float(f"{value:.4g}") for name, value in changes.items()},
+        "held": float(path.held),
+        "largest": float(f"{_largest(on, valid[0][stops]):.4g}"),
         "states": int(valid[0][stops].sum()),
         "missing": int((valid[0][stops] & ~valid[1][stops]).sum()),
         "unknowns_with": on.solution.unknowns,
@@ -85,6 +90,13 @@ def _change(on: Solved, off: Solved, name: str, both: NDArray[np.bool_], asked: 
         return np.nan
     with_it, without = (s.solution.states[name][: len(both)][both] for s in (on, off))
     return float(np.abs(without - with_it).max() / np.abs(with_it).max())
+
+
+def _largest(on: Solved, valid: NDArray[np.bool_]) -> float:
+    """The largest force, or contraction under a load, with the effect on."""
+    name = "contraction" if on.asked.case.path.kind == "isotonic" else "force"
+    values = on.solution.states[name][: len(valid)][valid]
+    return float(np.abs(values).max()) if valid.any() else np.nan
 
 
 def _threshold(on: Solved, off: Solved) -> float:
