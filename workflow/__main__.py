@@ -67,6 +67,8 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--runs", type=int, default=3, help="of every case; medians are taken")
     entry.add_argument("--costs", type=Path, default=Path("results/cost.csv"))
     entry.add_argument("--table", type=Path, default=Path("results/tables/benchmark.csv"))
+    entry = add(_bounds, "Take over the errors that the accuracy study has found.", study=False)
+    entry.add_argument("--table", type=Path, default=Path("results/tables/accuracy.csv"))
     entry = add(_failures, "List what failed; status 1 if anything did.", study=False)
     entry.add_argument("--table", type=Path, default=FAILURES)
     entry = add(_retry, "Delete the records of failed cases, so that they are solved again.")
@@ -175,6 +177,13 @@ def _benchmark(given: argparse.Namespace) -> int:
     from workflow import benchmark
 
     benchmark.make(given.study, given.runs, given.costs, given.table)
+    return 0
+
+
+def _bounds(given: argparse.Namespace) -> int:
+    from workflow import discretisation
+
+    discretisation.take_over(given.table)
     return 0
 
 

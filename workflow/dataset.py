@@ -6,6 +6,7 @@ Layout, version 1
 /isometric   dims muscle, model, variant, contraction, pressure
 /isotonic    dims muscle, model, variant, load, pressure
     the variables of solver.record.VARIABLES that are no dimension, NaN where there is no state;
+    force_error: what its mesh does to the force at most (workflow/discretisation.py);
     status: of the state (solver/status.py), empty where nobody asked for one;
     case, case_status, case_reason: of the curve (without the last dimension);
     threshold_pressure (isometric), free_contraction (isobaric), each with its _status: of the
@@ -30,7 +31,7 @@ import xarray as xr
 
 from solver.case import MODELS
 from solver.record import VARIABLES
-from workflow import reference
+from workflow import discretisation, reference
 from workflow.aside import aside
 from workflow.config import StudiedMuscle
 from workflow.records import Curve
@@ -48,6 +49,7 @@ ZERO_FORCE = {
     "isometric": ("threshold_pressure", "pressure", "pressure of zero force"),
     "isobaric": ("free_contraction", "contraction", "contraction of zero force"),
 }
+FORCE_ERROR = {"units": "N", "long_name": "bound on the discretisation error of the force"}
 MUSCLE = {  # coordinates along muscle: (unit, long name, value)
     "inner_diameter": ("mm", "initial inner diameter", lambda m: m.muscle.inner_diameter),
     "wall_thickness": ("mm", "initial wall thickness", lambda m: m.muscle.wall_thickness),
@@ -102,12 +104,16 @@ def _group(name: str, curves: Sequence[Curve], muscles: Mapping[str, StudiedMusc
     states = {v: np.full(shape, np.nan) for v in VARIABLES if v not in axes}
     labels = {v: np.full(shape[:-1], "", object) for v in ("case", "case_status", "case_reason")}
     status = np.full(shape, "", object)
+    force_error = np.full(shape, np.nan)
     for curve in curves:
         at = tuple(place_of[dim][value] for dim, value in _labels(curve, held).items())
         along = [place_of[swept][stop] for stop in curve.stops]
         chosen = [curve.case.path.stops.index(stop) for stop in curve.stops]
         for variable, values in states.items():
             values[(*at, along)] = curve.solution.states[variable][chosen]
+        force_error[(*at, along)] = discretisation.error(curve.case, curve.solution, "force")[
+            chosen
+        ]
         status[(*at, along)] = [curve.solution.state_status[k].value for k in chosen]
         labels["case"][at] = curve.key
         labels["case_status"][at] = curve.solution.status.value
@@ -117,6 +123,7 @@ def _group(name: str, curves: Sequence[Curve], muscles: Mapping[str, StudiedMusc
     for variable, values in states.items():
         unit, long_name = VARIABLES[variable]
         data[variable] = (dims, values, {"units": unit, "long_name": long_name})
+    data["force_error"] = (dims, force_error, FORCE_ERROR)
     data["status"] = (dims, status.astype(str), {"long_name": "status of the state"})
     for variable, texts in labels.items():
         long_name = variable.replace("_", " ") + (" key" if variable == "case" else "")

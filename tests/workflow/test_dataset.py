@@ -232,3 +232,12 @@ def test_a_flipped_bit_in_a_number_is_noticed(study, tmp_path):
     with pytest.raises(OSError, match="filter"), xr.open_datatree(path) as tree:
         tree.load()
     assert main(["deviation", f"--dataset={path}", "--muscles=one", "--table=x.csv"]) == 1
+
+
+def test_every_curve_has_its_discretisation_error(tree):
+    at = {"muscle": "one", "variant": "default", "pressure": 0.2}
+    force, error = (tree["isobaric"][name].sel(at) for name in ("force", "force_error"))
+    assert error.attrs["units"] == "N"
+    share = error.max("contraction") / abs(force).max("contraction")
+    assert 0 < float(share.sel(model="membrane")) < float(share.sel(model="solid")) < 0.0025
+    assert (error.notnull() == force.notnull()).all()

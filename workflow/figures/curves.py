@@ -14,7 +14,14 @@ from matplotlib.lines import Line2D
 
 from solver.status import StateStatus
 from workflow.figures.labels import SERIES, shown
-from workflow.figures.states import GOOD, REFERENCE
+from workflow.figures.states import (
+    COLUMN,
+    CONTRACTION,
+    FORCE,
+    GOOD,
+    REFERENCE,
+    error_of,
+)
 from workflow.figures.style import COMPARED, SOFT, SOURCES, grow, legend, series
 
 NOT_DRAWN = (StateStatus.INVALID_STATE.value, StateStatus.NOT_REACHED.value)
@@ -25,6 +32,7 @@ OPEN = {
     "zorder": 3,
     "label": "unstable",
 }
+DIAMETER_INSIDE = COLUMN["inner_diameter_inflated"]
 CHARACTERS = 18  # of a note, per inch of figure
 NOTE_LINE = 0.14  # inch
 
@@ -84,11 +92,21 @@ def curve(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
         own = np.flatnonzero(rows["point"] == "tabulated").tolist()
         every = {"markevery": own} if (rows["status"] == REFERENCE).any() else {}
         ax.plot(rows[x], values, **every | style)
+        _band(ax, rows, x, y, values, style)
         if not every:
             _dot_lonely(ax, rows[x].to_numpy(dtype=float), values, style)
     unstable = rows[rows["status"] == StateStatus.UNSTABLE.value]
     if len(unstable):
         ax.plot(unstable[x], unstable[y], color=style["color"], **OPEN)
+
+
+def _band(ax: Any, rows: pd.DataFrame, x: str, y: str, values: np.ndarray, style: Any) -> None:
+    """The discretisation error around a curve, if it is known; mostly narrower than the line."""
+    errors = rows.get(error_of(y))
+    if errors is not None and errors.max() > 0:
+        error = errors.to_numpy(dtype=float)
+        band = {"color": style["color"], "alpha": 0.3, "linewidth": 0, "label": "_band"}
+        ax.fill_between(rows[x], values - error, values + error, **band)
 
 
 def _dot_lonely(ax: Any, x: np.ndarray, y: np.ndarray, style: dict[str, Any]) -> None:
@@ -110,10 +128,27 @@ def note_gaps(figure: Figure, table: pd.DataFrame, by: list[str], x: str, text: 
         named = [shown(column, key) for column, key in zip(by, keys, strict=True)]
         count = f"{len(rows)} state{'s' if len(rows) > 1 else ''} {status.replace('_', ' ')}"
         lines.append(f"{', '.join([SOURCES[source]['label'], *named])}: {count}{_at(rows[x], x)}")
+    text = f"{text} {_errors(table)}".strip()
     if lines:
         text = f"Not drawn: {'; '.join(lines)}. {text}"
     if text:
         note(figure, text)
+
+
+def _errors(table: pd.DataFrame) -> str:
+    """How wide the bands of the FE curves are at most; nothing if there are none."""
+    largest = {}
+    for column in (FORCE, DIAMETER_INSIDE, CONTRACTION):
+        error = error_of(column)
+        if error in table and column in table:
+            shares = table.groupby("source")[[error, column]].agg(lambda v: v.abs().max())
+            for source, share in (shares[error] / shares[column]).items():
+                if share > 0:
+                    largest[source] = max(share, largest.get(source, 0))
+    if not largest:
+        return ""
+    each = (f"{SOURCES[str(s)]['label']} {100 * v:.1g} %" for s, v in sorted(largest.items()))
+    return f"Bands: discretisation error, of the largest value at most {', '.join(each)}."
 
 
 def note(figure: Figure, text: str) -> None:

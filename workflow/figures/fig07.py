@@ -11,11 +11,21 @@ from matplotlib.figure import Figure
 
 from workflow.figures import curves
 from workflow.figures.labels import SERIES, constants, series
-from workflow.figures.states import COLUMN, CONTRACTION, DIAMETER, FORCE, PRESSURE, describe, states
+from workflow.figures.states import (
+    COLUMN,
+    CONTRACTION,
+    DIAMETER,
+    FORCE,
+    PRESSURE,
+    describe,
+    error_of,
+    states,
+)
 from workflow.figures.style import FULL, SOFT, panels, percent
 
 INITIAL = "initial_inner_diameter [mm]"
 INFLATED, EQUIVALENT = COLUMN["inner_diameter_inflated"], COLUMN["equivalent_diameter"]
+ERROR = error_of(INFLATED)
 EXCESS = "equivalent / inflated - 1 [1]"
 NAMES = {EQUIVALENT: "equivalent", INFLATED: "inflated"}
 STATE = ["source", "muscle", "variant", "point", CONTRACTION, PRESSURE, "status"]
@@ -30,14 +40,16 @@ def table(data: Any) -> pd.DataFrame:
     every[EQUIVALENT] = every[EQUIVALENT].where(every[FORCE] > 0)
     every[EXCESS] = every[EQUIVALENT] / every[INFLATED] - 1
     every[SERIES] = series(every, ["muscle", CONTRACTION])
-    return every[[*STATE, SERIES, INITIAL, *NAMES, EXCESS]]
+    return every[[*STATE, SERIES, INITIAL, *NAMES, ERROR, EXCESS]]
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Diameters, and the excess of the equivalent one."""
     figure, axes = panels(FULL, 3.2, 1, 2, gap=(0.75, 0), sharex=True)
     left, right = axes[0]
-    melted = table.melt([*STATE, SERIES], list(NAMES), "quantity", "diameter [mm]")
+    melted = table.melt([*STATE, SERIES, ERROR], list(NAMES), "quantity", "diameter [mm]")
+    error = melted[ERROR].where(melted["quantity"] == INFLATED)
+    melted[error_of("diameter [mm]")] = error
     quantity = melted["quantity"].map(NAMES)
     several = table[SERIES].nunique() > 1
     melted[SERIES] = quantity + ", " + melted[SERIES] if several else quantity

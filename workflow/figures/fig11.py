@@ -12,13 +12,22 @@ from matplotlib.ticker import NullLocator
 
 from workflow.figures import curves, force_contraction
 from workflow.figures.labels import SERIES, constants
-from workflow.figures.states import CONTRACTION, DIAMETER, FORCE, GOOD, PRESSURE, THREADS
+from workflow.figures.states import (
+    CONTRACTION,
+    DIAMETER,
+    FORCE,
+    GOOD,
+    PRESSURE,
+    THREADS,
+    error_of,
+)
 from workflow.figures.style import COLUMN_WIDTH, panels, percent
 from workflow.study_error import StudyError
 
 RATIO = "force / force of the narrowest [1]"
 SHARE = "force of the narrowest / its largest [1]"
 NARROWEST = "narrowest"
+RELATIVE = "discretisation error / force [1]"
 SMALL = 0.1  # of the narrowest muscle's largest force: below, the ratio means nothing
 CURVE = ["source", "variant", PRESSURE]
 PAPER = (0.20, 34.5)  # contraction, ratio
@@ -33,17 +42,19 @@ def table(data: Any) -> pd.DataFrame:
     narrowest = min(data.muscles, key=lambda name: (data.muscles[name].inner_diameter, name))
     every[SHARE] = every[FORCE] / every.groupby([*CURVE, "muscle"])[FORCE].transform("max")
     at = [*CURVE, CONTRACTION]
-    base = every[every["muscle"] == narrowest][[*at, FORCE, SHARE, "status", SERIES]]
+    every[RELATIVE] = every[error_of(FORCE)] / every[FORCE].abs()
+    base = every[every["muscle"] == narrowest][[*at, FORCE, RELATIVE, SHARE, "status", SERIES]]
     wider = every[every["muscle"] != narrowest].drop(columns=SHARE)
     both = wider.merge(base, "left", at, suffixes=("", f" {NARROWEST}"))
     worse = both["status"].where(both["status"] != GOOD, both[f"status {NARROWEST}"])
     both = both.rename(columns={f"{SERIES} {NARROWEST}": NARROWEST})
-    return both.assign(
-        **{
-            RATIO: both[FORCE] / both[f"{FORCE} {NARROWEST}"],
-            "status": worse,
-        }
-    ).drop(columns=[FORCE, f"{FORCE} {NARROWEST}", f"status {NARROWEST}"])
+    ratio = both[FORCE] / both[f"{FORCE} {NARROWEST}"]
+    relative = both[RELATIVE] + both[f"{RELATIVE} {NARROWEST}"]
+    known = {RATIO: ratio, error_of(RATIO): ratio.abs() * relative, "status": worse}
+    used = [FORCE, RELATIVE, "status"]
+    return both.assign(**known).drop(
+        columns=[error_of(FORCE), FORCE, RELATIVE, *(f"{name} {NARROWEST}" for name in used)]
+    )
 
 
 def draw(table: pd.DataFrame) -> Figure:

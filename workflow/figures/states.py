@@ -9,6 +9,7 @@ import pandas as pd
 from solver.load_path import HELD, SWEPT, Control
 from solver.record import VARIABLES
 from solver.status import StateStatus
+from workflow import discretisation
 from workflow.reference import ForceMap
 
 COLUMN = {name: f"{name} [{unit}]" for name, (unit, _) in VARIABLES.items()}
@@ -20,6 +21,7 @@ CONTROL = {
     Control.PRESSURE: PRESSURE,
     Control.FORCE: FORCE,
 }
+WITH_ERROR = {"force", "inner_diameter_inflated", "contraction"}  # quantities
 ZERO_FORCE = {"threshold_pressure", "free_contraction"}
 GOOD = StateStatus.CONVERGED.value
 SHOWN = (GOOD, StateStatus.UNSTABLE.value)  # statuses whose numbers may be shown
@@ -28,11 +30,18 @@ NUMBER = "state"  # column: number of the state in its record
 SUSPECT = "suspect"  # status of a point that is shown but not used
 
 
+def error_of(column: str) -> str:
+    """Column with the discretisation error of another."""
+    name, bracket, unit = column.partition(" [")
+    return f"{name}_error{bracket}{unit}"
+
+
 def states(data: Any, quantities: Iterable[str]) -> pd.DataFrame:
     """States of a scene at its own stops, a case may have more; in the order of the scene.
 
     Columns: source (model), muscle, variant, point (stop or zero force), the two prescribed
-    controls with the exact numbers of the study, the quantities, status.
+    controls with the exact numbers of the study, the quantities, the discretisation errors of some
+    of them, status.
     """
     frames = [of_curve(data.scene, quantities, *solved) for solved in data.solutions]
     return pd.concat(frames, ignore_index=True).drop(columns=NUMBER)
@@ -65,6 +74,8 @@ def of_curve(
     for name in quantities:
         values = np.where(np.isin(status, SHOWN), solution.states[name][wanted], np.nan)
         rows.setdefault(COLUMN[name], values)
+        if name in WITH_ERROR:
+            rows[error_of(COLUMN[name])] = discretisation.error(case, solution, name)[wanted]
     return pd.DataFrame(rows | {"status": status, NUMBER: wanted})
 
 

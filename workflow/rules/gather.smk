@@ -9,7 +9,7 @@
 rule gather:
     input:
         records=[record_of(case) for case in PLAN.cases],
-        reference=sources("config/reference/*.csv"),
+        reference=sources("config/reference/*.csv", "workflow/discretisation.csv"),
         sources=sources("workflow/*.py", "workflow/weights.csv"),
     output:
         dataset="results/dataset.nc",

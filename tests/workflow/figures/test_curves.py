@@ -91,7 +91,12 @@ def test_note_names_curve_status_and_place():
 
 def test_no_note_without_gaps(small_scene):
     figure = Figure(figsize=(7, 3))
-    curves.note_gaps(figure, states(small_scene(), ["force"]), [PRESSURE], CONTRACTION)
+    table = states(small_scene(), ["force"])
+    curves.note_gaps(figure, table, [PRESSURE], CONTRACTION)
+    (text,) = (text.get_text() for text in figure.texts)
+    assert text == ("Bands: discretisation error, of the largest value at most FE solid 0.2 %.")
+    figure = Figure(figsize=(7, 3))
+    curves.note_gaps(figure, table.drop(columns="force_error [N]"), [PRESSURE], CONTRACTION)
     assert figure.texts == []
     assert figure.get_size_inches()[1] == 3
 
