@@ -75,7 +75,7 @@ def _effects(model: str, case: Case, scene: Scene) -> Iterator[str]:
         if name not in on
     ]
     absent = [name for name in EFFECTS if name not in carried]
-    yield f"  {model:9}on: {', '.join(on) or 'none'}"
+    yield f"  {model:10}on: {', '.join(on) or 'none'}"
     if off:
         yield f"{'':11}off: {', '.join(off)}"
     if absent:
