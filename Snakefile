@@ -3,6 +3,8 @@
 #
 #   snakemake --cores 2                                         the study of the paper
 #   snakemake --cores 2 --config study=config/smoke/study.yaml  another study
+#   snakemake --cores 2 everything                              all studies and pages as well
+#   snakemake --report results/report.html                      the pages in one file
 from snakemake.utils import min_version
 
 min_version("9.0")
@@ -19,10 +21,12 @@ include: "workflow/rules/fields.smk"
 include: "workflow/rules/studies.smk"
 include: "workflow/rules/benchmark.smk"
 include: "workflow/rules/calibrate.smk"
+include: "workflow/rules/pages.smk"
+include: "workflow/rules/report.smk"
 
 
 rule all:
-    default_target: True
+    default_target: not REPORTING
     input:
         figures(),
         map(record_of, PLAN.cases),  # else one that was deleted would not be missed
@@ -33,3 +37,12 @@ rule all:
         "results/complete.txt",
     message:
         "All is there: results/figures, results/dataset.nc, results/muscles"
+
+
+rule everything:
+    default_target: REPORTING
+    input:
+        [] if REPORTING else rules.all.input,
+        pages(),
+    message:
+        "All is there; snakemake --report results/report.html makes the report"

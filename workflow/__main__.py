@@ -54,6 +54,12 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--tables", type=Path, default=Path("results/tables"), help="folder")
     entry.add_argument("--figures", type=Path, default=Path("results/figures"), help="folder")
     entry.add_argument("--muscles", type=Path, default=Path("results/calibration"), help="folder")
+    entry = add(_page, "Write a page of the report.", study=False)
+    entry.add_argument("--title", required=True)
+    entry.add_argument("--caption", type=Path, required=True)
+    entry.add_argument("--pictures", type=Path, nargs="*", default=[])
+    entry.add_argument("--tables", type=Path, nargs="*", default=[])
+    entry.add_argument("--output", type=Path, required=True, help=".html")
     add(_explain, "Say what every scene wants, what it gets and why, and which scenes share that.")
     add(_weigh, "Write what the planner knows of effects, from the solved study of effects.")
     of_study = {"metavar": "STUDY", "help": "of this study of the models; else of the scenes"}
@@ -130,6 +136,13 @@ def _calibrate(given: argparse.Namespace) -> int:
     from workflow.calibration import program
 
     program.run(given.study, given.tables, given.figures, given.muscles)
+    return 0
+
+
+def _page(given: argparse.Namespace) -> int:
+    from workflow import page
+
+    page.write(given.output, given.title, given.caption, given.pictures, given.tables)
     return 0
 
 

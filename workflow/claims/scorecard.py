@@ -1,8 +1,9 @@
 """All claims in one table: number, how sure it is, verdict.
 
-Two things make a number unsure. Discretisation: every curve is off by at most SHARE of its largest
-force (tests/verification), so the claims are judged again on copies of the dataset in which every
-curve is shifted by that, up or down as chance has it. And the thread stiffness, which the paper
+Two things make a number unsure. Discretisation: the dataset says by how much the force of each
+state is off at most (force_error; without it SHARE of the curve's largest force), so the claims are
+judged again on copies of the dataset in which every curve is shifted by that, up or down as chance
+has it. And the thread stiffness, which the paper
 does not give: they are judged again on datasets with other EA by a faster model. A claim that is
 reproduced with one EA and not with another is reproduced partly.
 """
@@ -120,24 +121,27 @@ def _shifted(name: str, data: xr.Dataset, chance: np.random.Generator) -> xr.Dat
     sign = sign.where(data.model != GEOMETRIC, 0.0)
     changed = {}
     if name == "isotonic":
-        largest = _blocked_force(data)
         # stiffness is dF/dl, and contraction is 1 - l/L
-        by_force = 1 / (data.stiffness * data.length)
-        changed["contraction"] = (data.contraction + sign * SHARE * largest * by_force).clip(
-            *CONTRACTION_LIMITS
-        )
+        shift = sign * _error(data, _blocked_force(data)) / (data.stiffness * data.length)
+        changed["contraction"] = (data.contraction + shift).clip(*CONTRACTION_LIMITS)
     else:
         swept = next(dim for dim in data.force.dims if dim not in dims)
         largest = np.abs(data.force).max(swept)
-        changed["force"] = data.force + sign * SHARE * largest
+        error = _error(data, largest)
+        changed["force"] = data.force + sign * error
         if "threshold_pressure" in data:
             steepness = largest / (data.pressure.max() - data.threshold_pressure)
-            changed["threshold_pressure"] = (
-                data.threshold_pressure - sign * SHARE * largest / steepness
-            )
+            shift = sign * error.max(swept) / steepness
+            changed["threshold_pressure"] = data.threshold_pressure - shift
     growth = data.inner_diameter_inflated - data.inner_diameter
     changed["inner_diameter_inflated"] = data.inner_diameter_inflated + sign * SHARE * growth
     return data.assign({key: new.transpose(*data[key].dims) for key, new in changed.items()})
+
+
+def _error(data: xr.Dataset, largest: xr.DataArray) -> xr.DataArray:
+    """What the force of each state is off at most [N]."""
+    usual = SHARE * largest
+    return data.force_error.fillna(usual) if "force_error" in data else usual
 
 
 def _blocked_force(data: xr.Dataset) -> xr.DataArray:

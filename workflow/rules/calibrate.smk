@@ -6,20 +6,6 @@
 #        results/figures/calibration.png, .svg
 
 
-def measured_files():
-    """Files of the user that calibrations are fitted to."""
-    named = {entry.reference for entry in PLAN.study.calibration.values()}
-    return sorted(name for name in named if Path(name).suffix)
-
-
-def asked_calibrations():
-    """All that the calibrations depend on, as one parameter."""
-    study = PLAN.study
-    muscles = {entry.muscle for entry in study.calibration.values()}
-    made_of = [(name, study.muscles[name]) for name in sorted(muscles)]
-    return digest(repr((sorted(study.calibration.items()), made_of, study.variants["default"])))
-
-
 rule calibrate:
     input:
         files=measured_files(),

@@ -129,3 +129,22 @@ def figure_sources(wildcards):
     others = [file for file in sources("workflow/figures/fig*.py") if file != own]
     shown = [] if wildcards.figure in PLAN.scenes else ["geometry/*.py"]
     return sources("workflow/figures/*.py", "workflow/*.py", *shown, without=others)
+
+
+def deviations():
+    """The table of deviations, where the study has the scene that is compared."""
+    return ["results/tables/deviation.csv"] if "fig04" in PLAN.scenes else []
+
+
+def measured_files():
+    """Files of the user that calibrations are fitted to."""
+    named = {entry.reference for entry in PLAN.study.calibration.values()}
+    return sorted(name for name in named if Path(name).suffix)
+
+
+def asked_calibrations():
+    """All that the calibrations depend on, as one parameter."""
+    study = PLAN.study
+    muscles = {entry.muscle for entry in study.calibration.values()}
+    made_of = [(name, study.muscles[name]) for name in sorted(muscles)]
+    return digest(repr((sorted(study.calibration.items()), made_of, study.variants["default"])))

@@ -4,11 +4,6 @@
 #   out  results/tables/deviation.csv    of the muscles of fig04, which the maps are of
 
 
-def deviations():
-    """The table of deviations, where the study has the scene that is compared."""
-    return ["results/tables/deviation.csv"] if "fig04" in PLAN.scenes else []
-
-
 rule deviation:
     input:
         dataset="results/dataset.nc",

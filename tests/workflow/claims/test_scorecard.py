@@ -92,6 +92,14 @@ def test_shifted_curves_keep_their_shape_and_equation_one():
     assert changes == [float(c["isobaric"].force[0, -1, 0, 0, 0]) for c in shifted(tree)]
 
 
+def test_the_error_is_that_of_the_dataset_where_it_tells():
+    data = dataset()["isobaric"].to_dataset()
+    told = data.assign(force_error=0 * data.force + 7.0)
+    for copy in shifted(xr.DataTree.from_dict({"isobaric": told})):
+        change = (copy["isobaric"].force - data.force).sel(model="membrane")
+        np.testing.assert_allclose(np.abs(change), 7)
+
+
 def test_nothing_testable_has_no_number():
     found = row("C10", {315.0: dataset()})
     assert found["verdict"] == "not testable"

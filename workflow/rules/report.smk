@@ -1,0 +1,39 @@
+# Figures, tables and the scorecard -> pages -> one report for the browser:
+#
+#   snakemake --cores 2 everything
+#   snakemake --report results/report.html
+#
+#   in   results/figures, results/tables; workflow/report/<page>.rst, what each page shows
+#   out  results/report/<page>.html    caption, figure, the claims that are of it, tables
+#
+# The report holds the pages that are there; it is made of files, and nothing runs for it.
+report: "../report/workflow.rst"
+
+
+for page_name, (page_chapter, page_title, page_pictures, page_tables) in PAGES.items():
+
+    rule:
+        name:
+            f"page_{re.sub('[^A-Za-z0-9]', '_', page_name)}"
+        input:
+            pictures=page_pictures,
+            tables=page_tables,
+            caption=str(caption_of(page_name)),
+            sources=sources("workflow/page.py", "workflow/aside.py"),
+        output:
+            report(
+                f"results/report/{page_name}.html",
+                caption=f"../report/{caption_of(page_name).name}",
+                category=page_chapter,
+                labels={"page": page_title},
+            ),
+        log:
+            f"results/logs/report/{page_name}.log",
+        params:
+            title=page_title,
+        message:
+            f"Writing the page {page_name}"
+        shell:
+            "python -m workflow page --title {params.title:q} --caption {input.caption:q}"
+            " --pictures {input.pictures:q} --tables {input.tables:q} --output {output:q}"
+            " > {log:q} 2>&1"
