@@ -52,9 +52,7 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def _write_cost(
-    path: Path, start: float, solving: float, status: str, usage: Usage | None
-) -> None:
+def _write_cost(path: Path, start: float, solving: float, status: str, usage: Usage | None) -> None:
     cost = {
         "total_seconds": time.monotonic() - start,
         "python_cpu_seconds": time.process_time() - solving,  # from its start, with all imports
