@@ -147,7 +147,7 @@ def _errors(table: pd.DataFrame) -> str:
                     largest[source] = max(share, largest.get(source, 0))
     if not largest:
         return ""
-    each = (f"{SOURCES[str(s)]['label']} {100 * v:.1g} %" for s, v in sorted(largest.items()))
+    each = (f"{SOURCES[str(s)]['label']} {100 * v:.2g} %" for s, v in sorted(largest.items()))
     return f"Bands: discretisation error, of the largest value at most {', '.join(each)}."
 
 

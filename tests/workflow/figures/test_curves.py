@@ -94,7 +94,7 @@ def test_no_note_without_gaps(small_scene):
     table = states(small_scene(), ["force"])
     curves.note_gaps(figure, table, [PRESSURE], CONTRACTION)
     (text,) = (text.get_text() for text in figure.texts)
-    assert text == ("Bands: discretisation error, of the largest value at most FE solid 0.2 %.")
+    assert text == ("Bands: discretisation error, of the largest value at most FE solid 0.15 %.")
     figure = Figure(figsize=(7, 3))
     curves.note_gaps(figure, table.drop(columns="force_error [N]"), [PRESSURE], CONTRACTION)
     assert figure.texts == []
