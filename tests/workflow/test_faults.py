@@ -96,7 +96,7 @@ def test_killed_at_random_moments(project, copy):
     campaign(copy, project, kills=4, seed=1)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("seed", range(4))
 def test_killed_many_times(project, copy, seed):
     copy.clear()
@@ -129,8 +129,8 @@ def test_a_full_disk(project, copy, size):
     assert_undisturbed(copy, project)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("size", [0, 500, 3_000, 10_000, 60_000, 200_000])
+@pytest.mark.campaign
+@pytest.mark.parametrize("size", [0, 500, 3_000, 10_000, 60_000, 150_000])
 def test_a_full_disk_of_any_size(project, copy, size):
     test_a_full_disk(project, copy, size)
 
@@ -150,7 +150,7 @@ def corrupt(path, chance):
 
 
 @pytest.mark.parametrize(
-    "seed", [1, *[pytest.param(s, marks=pytest.mark.slow) for s in range(2, 9)]]
+    "seed", [1, *[pytest.param(s, marks=pytest.mark.campaign) for s in range(2, 9)]]
 )
 def test_corrupted_files_of_each_kind(project, copy, seed):
     """None is read as data; each that matters is named, and tried again when asked."""
