@@ -94,7 +94,7 @@ KINDS = {
     ("scenes",): "mapping",
     ("scenes", "fig04"): "mapping",
 }
-MAY_BE_LEFT_OUT = {("muscles", "wide"), ("scenes", "fig04", "variants")}
+MAY_BE_LEFT_OUT = {("muscles", "wide"), *(("scenes", "fig04", k) for k in ("variants", "models"))}
 SECTIONS = [(), *[keys for keys, kind in KINDS.items() if kind == "mapping"]]
 
 
