@@ -13,7 +13,8 @@ rule benchmark:
         "results/tables/accuracy.csv",
     log:
         "results/logs/benchmark.log",
-    threads: workflow.cores  # nothing else runs beside it
+    # Nothing else runs beside it. Asked late, since --report names no cores.
+    threads: lambda _: workflow.cores
     params:
         study=STUDY,
     message:
