@@ -69,6 +69,7 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--name", required=True)
     entry.add_argument("--table", type=Path, required=True)
     entry.add_argument("--figures", type=Path, default=Path("results/figures"), help="folder")
+    entry.add_argument("--dataset", type=Path, default=DATASET)
     entry = add(_benchmark, "Measure what the accuracy study costs on this machine.")
     entry.add_argument("--runs", type=int, default=3, help="of every case; medians are taken")
     entry.add_argument("--costs", type=Path, default=Path("results/cost.csv"))
@@ -90,11 +91,14 @@ def _plan(given: argparse.Namespace):
 
 
 def _gather(given: argparse.Namespace) -> int:
-    from workflow import dataset, failures, records
+    from workflow import dataset, failures, records, study_groups
 
     plan = _plan(given)
     curves = records.curves_of_study(plan)
-    dataset.write(dataset.build(curves, plan.study.muscles, effects=True), given.dataset)
+    with study_groups.alone(given.dataset):
+        others = study_groups.found(given.failures.parent)
+        tree = dataset.build(curves, plan.study.muscles, effects=True, others=others)
+        dataset.write(tree, given.dataset)
     failures.write(plan, {curve.key: curve.solution for curve in curves}, given.failures)
     return 0
 
@@ -180,9 +184,10 @@ def _asked(given: argparse.Namespace):
 
 
 def _study(given: argparse.Namespace) -> int:
-    from workflow import studies
+    from workflow import studies, study_groups
 
     studies.evaluate(given.name, str(given.study), given.table, given.figures)
+    study_groups.add(given.name, given.table, given.dataset)
     return 0
 
 

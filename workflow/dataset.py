@@ -15,6 +15,7 @@ Layout, version 1
 /effects     dims regime, path, effect: what leaving out an effect changes and costs, as measured by
              the study of effects (workflow/weights.py); only in results/dataset.nc
 /reference   dim point: the force maps that figures compare with
+/robustness, /threads   dim row: the tables of these studies, where they were asked for
 
 A state that is invalid_state keeps its numbers: look at status before you believe one.
 Units and long names are attributes. Groups without a curve are absent. The same records give the
@@ -67,10 +68,19 @@ MUSCLE = {  # coordinates along muscle: (unit, long name, value)
 
 
 def build(
-    curves: Sequence[Curve], muscles: Mapping[str, StudiedMuscle], *, effects: bool = False
+    curves: Sequence[Curve],
+    muscles: Mapping[str, StudiedMuscle],
+    *,
+    effects: bool = False,
+    others: Mapping[str, xr.Dataset] | None = None,
 ) -> xr.DataTree:
-    """The tree of some curves; with ``effects`` also what is known of leaving effects out."""
-    groups = {"reference": _reference()} | ({"effects": weights_group()} if effects else {})
+    """The tree of some curves and of ``others``, further groups by name.
+
+    With ``effects`` also what is known of leaving effects out.
+    """
+    groups = {"reference": _reference(), **(others or {})}
+    if effects:
+        groups["effects"] = weights_group()
     for name in HELD_KEY:
         found = [curve for curve in curves if curve.place.group == name]
         if found:

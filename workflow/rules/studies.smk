@@ -3,6 +3,7 @@
 #   in   the records of the study's cases; workflow/studies/<name>.py
 #   out  results/tables/<name>.csv    all that its figures draw
 #        results/figures/<...>.png, .svg
+#        a group of results/dataset.nc, for some (workflow/study_groups.py)
 
 for study_name, study_figures in studies.FIGURES.items():
 
@@ -18,6 +19,8 @@ for study_name, study_figures in studies.FIGURES.items():
                 f"workflow/{study_name}/*.py",
                 "workflow/studies/__init__.py",
             ),
+            # Added to, not read: it must be there, and a newer one is no reason to run again.
+            dataset=ancient("results/dataset.nc") if study_name in studies.IN_DATASET else [],
         output:
             table=f"results/tables/{study_name}.csv",
             figures=expand(

@@ -32,6 +32,7 @@ FIGURES = {
     "threads": ("threads", "threads_correction"),
     "sensitivity": ("sensitivity",),
 }
+IN_DATASET = ("robustness", "threads")  # tables that are groups of the dataset as well
 
 
 @dataclass(frozen=True)
