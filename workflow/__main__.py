@@ -36,16 +36,14 @@ def _parser() -> argparse.ArgumentParser:
             entry.add_argument("--study", type=Path, default=STUDY)
         return entry
 
-    entry = add(_gather, "Write the dataset and the table of failures from all records.")
+    entry = add(_gather, "Write the dataset and the tables of failures and deviations.")
     entry.add_argument("--dataset", type=Path, default=DATASET)
     entry.add_argument("--failures", type=Path, default=FAILURES)
+    entry.add_argument("--deviation", type=Path, help="table of deviations from the force maps")
+    entry.add_argument("--compared", nargs="*", default=[], help="muscles that the maps are of")
     entry = add(_figure, "Draw the figure of a scene and write its numbers.")
     entry.add_argument("--scene", required=True)
     entry.add_argument("--output", type=Path, required=True, help=".png; .svg and .csv beside it")
-    entry = add(_deviation, "Compare the dataset with the reference maps.", study=False)
-    entry.add_argument("--dataset", type=Path, default=DATASET)
-    entry.add_argument("--muscles", nargs="+", required=True, help="those the maps are of")
-    entry.add_argument("--table", type=Path, required=True)
     entry = add(_fields, "Write the fields of a recorded state for ParaView.", study=False)
     entry.add_argument("--record", type=Path, required=True)
     entry.add_argument("--state", type=int, required=True, help="number of the stop, from 0")
@@ -91,7 +89,8 @@ def _plan(given: argparse.Namespace):
 
 
 def _gather(given: argparse.Namespace) -> int:
-    from workflow import dataset, failures, records, study_groups
+    from workflow import dataset, deviation, failures, records, study_groups
+    from workflow.aside import aside
 
     plan = _plan(given)
     curves = records.curves_of_study(plan)
@@ -100,6 +99,10 @@ def _gather(given: argparse.Namespace) -> int:
         tree = dataset.build(curves, plan.study.muscles, effects=True, others=others)
         dataset.write(tree, given.dataset)
     failures.write(plan, {curve.key: curve.solution for curve in curves}, given.failures)
+    if given.deviation:
+        rows = deviation.table(tree, given.compared)
+        with aside(given.deviation) as beside:
+            rows.to_csv(beside, index=False, float_format="%.6g")
     return 0
 
 
@@ -107,25 +110,6 @@ def _figure(given: argparse.Namespace) -> int:
     from workflow import figure
 
     figure.make(_plan(given), given.scene, given.output)
-    return 0
-
-
-def _deviation(given: argparse.Namespace) -> int:
-    import xarray as xr
-
-    from workflow import deviation
-    from workflow.aside import aside
-
-    try:
-        with xr.open_datatree(given.dataset, engine="h5netcdf") as tree:
-            rows = deviation.table(tree.load(), given.muscles)
-    except (OSError, RuntimeError) as error:
-        raise StudyError(
-            f"{given.dataset}: no readable dataset ({error})\n"
-            "  delete the file and run snakemake to gather it again"
-        ) from None
-    with aside(given.table) as beside:
-        rows.to_csv(beside, index=False, float_format="%.6g")
     return 0
 
 

@@ -91,12 +91,11 @@ def states(found: ForceMap, force: xr.DataArray, status: xr.DataArray) -> pd.Dat
     ``left_out`` says why.
     """
     frames = []
+    good = status.reindex(contraction=CONTRACTIONS, fill_value="") == GOOD
+    ours = force.reindex(contraction=CONTRACTIONS).where(good)
     for pressure in force.pressure.values:
         expected = found.force(CONTRACTIONS, float(pressure))
-        at = {"pressure": pressure}
-        ours = force.sel(at).reindex(contraction=CONTRACTIONS)
-        good = status.sel(at).reindex(contraction=CONTRACTIONS, fill_value="") == GOOD
-        value = ours.where(good).to_numpy()
+        value = ours.sel(pressure=pressure).to_numpy()
         largest = largest_force(found, float(pressure))
         small = expected <= SMALL * largest
         why = np.where(small, "small reference", "")

@@ -7,14 +7,18 @@ the braid is a piece of the tube in x, y, z, with the stress of its rubber and i
 """
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver import record
 from workflow.aside import aside
-from workflow.plan import Plan
+from workflow.principal import principal, principal_of_six
 from workflow.study_error import StudyError
+
+if TYPE_CHECKING:
+    from workflow.plan import Plan
 
 MODELS = ("membrane", "solid", "cell")
 COMPONENTS = ("rr", "rz", "zz", "tt")
@@ -22,7 +26,7 @@ CELL_COMPONENTS = ("rr", "tt", "zz", "rt", "tz", "rz")
 THREADS = ("thread_stretch_1", "thread_stretch_2", "thread_density_1", "thread_density_2")
 
 
-def files(plan: Plan) -> dict[str, tuple[str, int]]:
+def files(plan: "Plan") -> dict[str, tuple[str, int]]:
     """File name -> case and state, for all fields that the scenes of a study ask for."""
     found = {}
     for places in plan.scenes.values():
@@ -82,8 +86,6 @@ def _line(fields: dict[str, NDArray[np.float64]]) -> Parts:
 
 
 def _wall(fields: dict[str, NDArray[np.float64]]) -> Parts:
-    from workflow.figures.stress import principal
-
     points, displacement = _places(fields["corners"])
     largest, smallest = principal(fields["stress"])
     data = {"displacement": displacement}
@@ -93,14 +95,12 @@ def _wall(fields: dict[str, NDArray[np.float64]]) -> Parts:
 
 
 def _cell(fields: dict[str, NDArray[np.float64]]) -> Parts:
-    from workflow.figures.stress import principal_of_six
-
     before, after = (_cartesian(fields["corners"][:, k : k + 3]) for k in (0, 3))
-    principal = principal_of_six(fields["stress"])
+    stresses = principal_of_six(fields["stress"])
     data = {"displacement": after - before}
     data |= {f"stress_{c}": fields["stress"][:, k] for k, c in enumerate(CELL_COMPONENTS)}
-    data |= {"largest_principal_stress": principal[:, 2]}
-    data |= {"smallest_principal_stress": principal[:, 0]}
+    data |= {"largest_principal_stress": stresses[:, 2]}
+    data |= {"smallest_principal_stress": stresses[:, 0]}
     data |= {name: fields["threads"][:, k] for k, name in enumerate(THREADS)}
     return before, {"tetra": np.arange(len(before)).reshape(-1, 4)}, data
 

@@ -9,7 +9,6 @@ import xarray as xr
 
 from solver.record import VARIABLES
 from workflow import dataset, failures, records
-from workflow.__main__ import main
 from workflow.plan import Place
 from workflow.scene_data import SceneData
 from workflow.study_error import StudyError
@@ -231,7 +230,6 @@ def test_a_flipped_bit_in_a_number_is_noticed(study, tmp_path):
     path.write_bytes(content)
     with pytest.raises(OSError, match="filter"), xr.open_datatree(path) as tree:
         tree.load()
-    assert main(["deviation", f"--dataset={path}", "--muscles=one", "--table=x.csv"]) == 1
 
 
 def test_every_curve_has_its_discretisation_error(tree):

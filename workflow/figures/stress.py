@@ -4,22 +4,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from workflow.principal import principal
+
 SECTION = ["R [mm]", "Z [mm]", "r [mm]", "z [mm]"]
 LARGEST, SMALLEST = "largest principal stress [MPa]", "smallest principal stress [MPa]"
-
-
-def principal(stress: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest and smallest of the three principal stresses of rows rr, rz, zz, tt (hoop)."""
-    rr, rz, zz, tt = stress.T
-    mean, radius = (rr + zz) / 2, np.hypot((rr - zz) / 2, rz)
-    return np.maximum(mean + radius, tt), np.minimum(mean - radius, tt)
-
-
-def principal_of_six(stress: NDArray[np.float64]) -> NDArray[np.float64]:
-    """All three principal stresses, rising, of rows rr, tt, zz, rt, tz, rz; one row each."""
-    rr, tt, zz, rt, tz, rz = stress.T
-    rows = [np.stack(row, axis=-1) for row in ((rr, rt, rz), (rt, tt, tz), (rz, tz, zz))]
-    return np.asarray(np.linalg.eigvalsh(np.stack(rows, axis=-1)))
 
 
 def wall(fields: dict[str, NDArray[np.float64]]) -> pd.DataFrame:

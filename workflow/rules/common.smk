@@ -136,6 +136,12 @@ def deviations():
     return ["results/tables/deviation.csv"] if "fig04" in PLAN.scenes else []
 
 
+def compared():
+    """What gather is told of that table."""
+    muscles = PLAN.study.scenes["fig04"].muscles if deviations() else ()
+    return ["--deviation", *deviations(), "--compared", *muscles] if muscles else []
+
+
 def measured_files():
     """Files of the user that calibrations are fitted to."""
     named = {entry.reference for entry in PLAN.study.calibration.values()}

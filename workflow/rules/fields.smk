@@ -7,7 +7,7 @@
 rule fields:
     input:
         record=lambda wildcards: record_of(FIELD_FILES[wildcards.file][0]),
-        sources=["workflow/paraview.py", "workflow/figures/stress.py"],
+        sources=["workflow/paraview.py", "workflow/principal.py"],
     output:
         "results/fields/{file}",
     log:

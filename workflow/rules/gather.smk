@@ -1,8 +1,9 @@
-# Records -> dataset and table of failures.
+# Records -> dataset, and tables of what failed and of how far it is from what was measured.
 #
 #   in   all records of the study; the reference maps
 #   out  results/dataset.nc             layout: workflow/dataset.py
 #        results/tables/failures.csv    what did not work out; often a header only
+#        results/tables/deviation.csv   from the maps, of the muscles of fig04, which these are of
 #        results/complete.txt           if no case failed; else the run ends with an error here
 
 
@@ -14,16 +15,20 @@ rule gather:
     output:
         dataset="results/dataset.nc",
         failures="results/tables/failures.csv",
+        deviation=deviations(),
     log:
         "results/logs/gather.log",
+    priority: 1
     params:
         study=STUDY,
         plan=PLAN.digest(),
+        compared=compared(),
     message:
         "Gathering the records of all cases"
     shell:
         "python -m workflow gather --study {params.study:q}"
-        " --dataset {output.dataset:q} --failures {output.failures:q} 2> {log:q}"
+        " --dataset {output.dataset:q} --failures {output.failures:q}"
+        " {params.compared:q} 2> {log:q}"
 
 
 rule complete:

@@ -15,6 +15,7 @@ rule mesh:
         "results/meshes/{mesh}",
     log:
         "results/logs/meshes/{mesh}.log",
+    priority: 1
     resources:
         wall_time=PLAN.study.wall_time,
         memory=PLAN.study.memory,

@@ -6,6 +6,7 @@
 #
 # A case is named by its content: it is solved once, also after a value was changed and changed back.
 # Limits are resources and no parameters: raising one does not solve anything again.
+# Cases go before figures, since one process gathers them all in the end, beside which these fit.
 
 
 rule solve:
@@ -17,6 +18,7 @@ rule solve:
         cost="results/cost/{case}.json",
     log:
         "results/logs/cases/{case}.log",
+    priority: 1
     resources:
         wall_time=PLAN.study.wall_time,
         memory=PLAN.study.memory,

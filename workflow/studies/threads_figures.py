@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 
 from geometry.cell import Box
-from workflow.figures import stress, style
+from workflow.figures import style
+from workflow.principal import principal_of_six
 from workflow.studies import Solved
 
 Array = NDArray[np.float64]
@@ -55,7 +56,7 @@ def _cut(figure: Figure, ax: Any, rubber: str, entry: Solved) -> None:
     (state,) = entry.solution.fields
     fields = entry.solution.fields[state]
     corners, box = fields["corners"], Box(case.muscle)
-    largest = stress.principal_of_six(fields["stress"])[:, 2]
+    largest = principal_of_six(fields["stress"])[:, 2]
     # a little off the round share, so that no corner lies on the cut
     level = corners[:, 2] - (HEIGHT + 1e-4) * box.spacing
     polygons = cut(np.column_stack([corners[:, [0, 1, 3, 4]], largest]), level)

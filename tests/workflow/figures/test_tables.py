@@ -8,7 +8,8 @@ import pytest
 from solver.status import StateStatus
 from workflow.figures.labels import SERIES
 from workflow.figures.states import COLUMN, CONTRACTION, FORCE, PRESSURE, WALL
-from workflow.figures.stress import LARGEST, SMALLEST, along_meridian, principal, wall
+from workflow.figures.stress import LARGEST, SMALLEST, along_meridian, wall
+from workflow.principal import principal
 from workflow.study_error import StudyError
 
 ANGLE = np.arctan(np.pi * 21.2 / 144)

@@ -8,7 +8,7 @@ import pytest
 from solver.record import Solution, unreached
 from solver.status import CaseStatus, StateStatus
 from workflow.config import load
-from workflow.figures.stress import principal_of_six
+from workflow.principal import principal_of_six
 from workflow.studies import Solved, threads
 from workflow.studies.threads_figures import cut
 
