@@ -30,8 +30,16 @@ from workflow.studies.robustness_table import table
 MUSCLE, SILICONE = "dmsp20", "dmsp20_silicone"  # of the study file
 CONTRACTIONS = tuple(round(-0.05 + 0.01 * k, 2) for k in range(31))
 PRESSURE = 0.3  # MPa, where a case does not name one
-MESHES = (1, 2, 3)  # refinements: coarse, medium, fine
-LOW_PRESSURE_STEPS = (0.14, 0.1, 0.07)  # inner diameters; the slack tube folds in 20 mm waves
+MESHES = {  # coarse, medium, fine
+    1: SectionMesh(cap_step=0.5),
+    2: SectionMesh(refinement=2),
+    3: SectionMesh(refinement=3),
+}
+LOW_PRESSURE_MESHES = {  # the slack tube folds in waves of 20 mm
+    number: SectionMesh(body_step=step)
+    for number, step in zip(MESHES, (0.14, 0.1, 0.07), strict=True)
+}
+HYPERCUBE_MESH = SectionMesh(cap_step=0.25, growth=1.25, body_step=0.5)
 
 SEED = 20260101
 SAMPLES = 200
@@ -121,7 +129,8 @@ def _named(study: Study) -> Iterator[StudyCase]:
     ours = study.muscles[MUSCLE]
     assert ours.thread is not None
     for name, hard in _hard_cases(study).items():
-        for mesh in MESHES:
+        meshes = LOW_PRESSURE_MESHES if hard.pressure < 0.1 else MESHES
+        for mesh in meshes:
             case = Case(
                 muscle=hard.muscle or ours.muscle,
                 rubber=hard.rubber or ours.rubber,
@@ -129,26 +138,20 @@ def _named(study: Study) -> Iterator[StudyCase]:
                 path=LoadPath(kind=PathKind.ISOBARIC, held=hard.pressure, stops=CONTRACTIONS),
                 model="solid",
                 effects=hard.effects,
-                numerics=_mesh(mesh, low_pressure=hard.pressure < 0.1),
-                fields_at=(CONTRACTIONS[-1],) if mesh == MESHES[0] else (),
+                numerics=Numerics(section=meshes[mesh]),
+                fields_at=(CONTRACTIONS[-1],) if mesh == min(MESHES) else (),
             )
             tags: dict[str, str | float] = {"set": "named", "name": name, "mesh": mesh}
             yield StudyCase(case, f"{name}, mesh {mesh}", tags)
-        membrane = replace(case, model="membrane", fields_at=())
-        tags = {"set": "named", "name": name, "mesh": MESHES[-1]}
+        membrane = replace(case, model="membrane", fields_at=(), numerics=_membrane_mesh(hard))
+        tags = {"set": "named", "name": name, "mesh": max(MESHES)}
         yield StudyCase(membrane, f"{name}, membrane", tags)
 
 
-def _mesh(refinement: int, *, low_pressure: bool = False) -> Numerics:
-    if low_pressure:
-        step = LOW_PRESSURE_STEPS[refinement - 1]
-        return Numerics(
-            section=SectionMesh(body_step=step),
-            meridian=MeridianMesh(body_step=step),
-        )
-    return Numerics(
-        section=SectionMesh(refinement=refinement), meridian=MeridianMesh(refinement=refinement)
-    )
+def _membrane_mesh(hard: _Hard) -> Numerics:
+    if hard.pressure < 0.1:
+        return Numerics(meridian=MeridianMesh(body_step=LOW_PRESSURE_MESHES[3].body_step))
+    return Numerics(meridian=MeridianMesh(refinement=3))
 
 
 def _hypercube() -> tuple[list[StudyCase], int]:
@@ -166,7 +169,8 @@ def _hypercube() -> tuple[list[StudyCase], int]:
         membrane = replace(case, model="membrane", fields_at=())
         found.append(StudyCase(membrane, f"sample {number}, membrane", tags))
         if number % REPEATED == 0:
-            finer = replace(case, path=_halved(case.path), numerics=_mesh(2))
+            twice = Numerics(section=replace(HYPERCUBE_MESH, refinement=2))
+            finer = replace(case, path=_halved(case.path), numerics=twice)
             found.append(StudyCase(finer, f"sample {number}, finer", tags | {"mesh": 2}))
     return found, redrawn
 
@@ -198,6 +202,7 @@ def _sample(point: np.ndarray) -> Case | None:
         thread=Thread(stiffness=v["stiffness"]),
         path=path,
         model="solid",
+        numerics=Numerics(section=HYPERCUBE_MESH),
         fields_at=(path.stops[-1],),
     )
 

@@ -1,15 +1,17 @@
 """What becomes of the robustness study: one row per case, and how far equal cases agree."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from solver.status import StateStatus
+from solver.status import CaseStatus, StateStatus
 from workflow.studies import Solved
 
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
+APART = 0.03  # share of the largest force from which a membrane is far from its solid
 
 
 def table(solved: Sequence[Solved]) -> pd.DataFrame:
@@ -17,14 +19,26 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
 
     ``difference`` is the largest difference of force from the case named in ``against`` (the finest
     mesh of the same model, or the solid on its finest mesh for a membrane), at states that both
-    have, as a share of the largest force of that case.
+    have, as a share of the largest force of that case. ``cause`` says why a membrane is far from
+    its solid (docs/decisions/0005 has the evidence).
     """
     finest = _finest(solved)
     rows = []
     for entry in solved:
-        reference = finest[_group(entry)]
-        rows.append(_row(entry) | _agreement(entry, reference))
+        row = _row(entry) | _agreement(entry, finest[_group(entry)])
+        rows.append(row | {"cause": _cause(row)})
     return pd.DataFrame(rows)
+
+
+def _cause(row: Mapping[str, Any]) -> str:
+    """Why a membrane is far from its solid, at the state where it is farthest."""
+    if row["model"] != "membrane" or not row["difference"] > APART:
+        return ""
+    if row["path"] == "isobaric" and row["difference at"] < 0:
+        return "drawn out: threads slip in the fitting of the solid, the membrane's end is rigid"
+    if row["status"] == CaseStatus.LIMIT_POINT:
+        return "ends bend, the membrane's wall cannot: near the state where it ends"
+    return "ends bend, the membrane's wall cannot"
 
 
 def _group(entry: Solved) -> tuple[str, str]:
@@ -43,7 +57,7 @@ def _finest(solved: Sequence[Solved]) -> dict[tuple[str, str], Solved]:
     return found
 
 
-def _row(entry: Solved) -> dict[str, object]:
+def _row(entry: Solved) -> dict[str, Any]:
     case, solution = entry.asked.case, entry.solution
     muscle, states = case.muscle, solution.states
     assert muscle.braid is not None
@@ -76,7 +90,7 @@ def _row(entry: Solved) -> dict[str, object]:
     }
 
 
-def _agreement(entry: Solved, reference: Solved) -> dict[str, object]:
+def _agreement(entry: Solved, reference: Solved) -> dict[str, Any]:
     if entry is reference:
         return {"against": "", "difference": np.nan, "difference at": np.nan}
     swept = "contraction" if entry.asked.case.path.kind == "isobaric" else "pressure"

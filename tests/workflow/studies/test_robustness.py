@@ -102,6 +102,20 @@ def test_differences_are_shares_of_the_largest_force_of_the_finest_mesh(table):
     assert by.loc[("solid", 3), "against"] == ""
 
 
+def test_a_membrane_far_from_its_solid_says_why(asked):
+    fine = of(asked, set="named", name="p 0.3 MPa", model="solid", mesh=3)[0]
+    membrane = of(asked, set="named", name="p 0.3 MPa", model="membrane")[0]
+    force = np.linspace(1000, 0, 31)
+    for where, cause in ((0, "drawn out"), (20, "ends bend"), (None, "")):
+        ours = force.copy()
+        if where is not None:
+            ours[where] += 50
+        rows = robustness.table([solved(fine, force), solved(membrane, ours)]).set_index("model")
+        assert rows.loc["membrane", "cause"].startswith(cause)
+        assert bool(rows.loc["membrane", "cause"]) == bool(cause)
+        assert rows.loc["solid", "cause"] == ""
+
+
 def test_states_that_are_missing_are_counted_and_not_compared(table):
     membrane = table.set_index("model").loc["membrane"]
     assert membrane["states reached"] == 25
