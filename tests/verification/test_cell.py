@@ -142,7 +142,10 @@ def test_newton_converges_quadratically(make_case, walk):
 
 @pytest.mark.slow
 def test_a_wire_has_no_limit(make_case, solve_case):
-    """The idealisation of the paper: force and det F fall with the mesh."""
+    """The idealisation of the paper: force and det F fall with the mesh.
+
+    PHYSICS: 0.6 N per unit of its logarithm, so the wire itself is about as stretched as a thread.
+    """
     sizes, found = (1.5, 1.0), []
     for size in sizes:
         mesh = CellMesh(thread_size=size)
@@ -154,7 +157,9 @@ def test_a_wire_has_no_limit(make_case, solve_case):
             effects=Effects(layers="wire"),
         )
         found.append(solve_case(case).states)
-    assert found[1]["force"][0] < found[0]["force"][0]
+    first, second = (state["force"][0] for state in found)
+    assert first - 1 < second < first
+    assert found[1]["thread_stretch_max"][0] - found[1]["thread_stretch_min"][0] < 0.02
     assert found[1]["min_det_f_nodes"][0] < found[0]["min_det_f_nodes"][0]
 
 
