@@ -8,7 +8,7 @@ correction  single threads and smeared layers of the same radial spread, NBR and
 mesh        the force on finer and finer meshes, for threads, smeared layers, and the wire of zero
             thickness, which has no limit
 twist       held and free ends
-picture     one state of both rubbers on the finest mesh, with its fields
+picture     one state of both rubbers on the finest mesh, with its fields, threads and smeared
 """
 
 from collections.abc import Iterator, Sequence
@@ -25,7 +25,7 @@ from solver.effects import Effects, Layers, Twist
 from solver.load_path import LoadPath, PathKind
 from solver.numerics import Numerics
 from workflow.config import Study
-from workflow.studies import Solved, StudyCase
+from workflow.studies import Solved, StudyCase, threads_local
 
 MUSCLES = {"NBR": "dmsp20", "silicone": "dmsp20_silicone"}  # of the study file
 CONTRACTIONS = (0.0, 0.05, 0.1, 0.15, 0.2)
@@ -45,6 +45,7 @@ COLUMNS = {  # of the record -> of the table
     "min_det_f": "smallest det F [1]",
     "min_det_f_nodes": "smallest det F at corners [1]",
 }
+STRESS, CONCENTRATION = "largest principal stress [MPa]", "stress concentration [1]"
 SAME = ["set", "rubber", "wall [mm]", "pressure [MPa]", "size", "twist", "contraction [1]"]
 
 
@@ -57,18 +58,23 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
     """One row per state.
 
     ``change [N]`` is the force beyond that of smeared layers, where there are both, and
-    ``share [1]`` the same over the largest force of the curve of smeared layers.
+    ``share [1]`` the same over the largest force of the curve of smeared layers. Pictures have the
+    largest stress of their rubber, and how many times that of smeared layers it is; in the set
+    ``tension`` a row is a place along a thread instead.
     """
     rows = pd.concat([_rows(entry) for entry in solved], ignore_index=True)
     smeared = rows[rows["layers"] == Layers.SMEARED]
-    known = smeared.set_index(SAME)["force [N]"]
+    known, known_stress = (smeared.set_index(SAME)[name] for name in ("force [N]", STRESS))
     curves = [key for key in SAME if key != "contraction [1]"]
     largest = smeared.groupby(curves)["force [N]"].agg(lambda force: force.abs().max())
     against = known.reindex(pd.MultiIndex.from_frame(rows[SAME])).to_numpy()
     scale = largest.reindex(pd.MultiIndex.from_frame(rows[curves])).to_numpy()
     rows["change [N]"] = rows["force [N]"] - against
     rows["share [1]"] = rows["change [N]"] / scale
-    return rows
+    stress = known_stress.reindex(pd.MultiIndex.from_frame(rows[SAME])).to_numpy()
+    rows[CONCENTRATION] = rows[STRESS] / stress
+    along = [_tension(entry) for entry in solved if entry.solution.fields]
+    return pd.concat([rows, *along], ignore_index=True)
 
 
 def draw(solved: Sequence[Solved], rows: pd.DataFrame) -> dict[str, Any]:
@@ -76,7 +82,7 @@ def draw(solved: Sequence[Solved], rows: pd.DataFrame) -> dict[str, Any]:
     from workflow.studies import threads_figures
 
     return {
-        "threads": threads_figures.cuts(shown(solved)),
+        "threads": threads_figures.local(shown(solved), rows),
         "threads_correction": threads_figures.correction(rows),
     }
 
@@ -86,19 +92,26 @@ def shown(solved: Sequence[Solved]) -> dict[str, Solved]:
     return {
         str(entry.asked.tags["rubber"]): entry
         for entry in solved
-        if entry.asked.case.fields_at and entry.solution.fields
+        if entry.asked.case.fields_at
+        and entry.solution.fields
+        and entry.asked.tags["layers"] == Layers.DISCRETE
     }
 
 
-def silicone_walls(rows: pd.DataFrame, contraction: float = CONTRACTION) -> pd.DataFrame:
-    """Claim C8: silicone's force by single threads; rows are walls, columns pressures."""
-    chosen = rows[
-        (rows["set"] == "correction")
-        & (rows["rubber"] == "silicone")
-        & (rows["layers"] == Layers.DISCRETE)
-        & np.isclose(rows["contraction [1]"], contraction)
+def of_claim(study: Study) -> list[StudyCase]:
+    """Claim C8: silicone at the claim's pressure, by wall, with single threads and smeared."""
+    return [
+        entry
+        for entry in _correction(study)
+        if entry.tags["rubber"] == "silicone" and entry.tags["pressure [MPa]"] == PRESSURE
     ]
-    return chosen.pivot_table("force [N]", "wall [mm]", "pressure [MPa]")
+
+
+def change_by_wall(solved: Sequence[Solved], contraction: float = CONTRACTION) -> pd.Series:
+    """What single threads change of the force [N], by wall thickness [mm]; of ``of_claim``."""
+    rows = table(solved)
+    chosen = (rows["layers"] == Layers.DISCRETE) & np.isclose(rows["contraction [1]"], contraction)
+    return rows[chosen].set_index("wall [mm]")["change [N]"].sort_index()
 
 
 def _rows(entry: Solved) -> pd.DataFrame:
@@ -106,6 +119,18 @@ def _rows(entry: Solved) -> pd.DataFrame:
     rows = pd.DataFrame({name: states[key] for key, name in COLUMNS.items()})
     rows["contraction [1]"] = case.path.stops  # exact, and also where nothing was reached
     rows["status"] = [status.value for status in entry.solution.state_status]
+    rows["unknowns [1]"] = entry.solution.unknowns
+    rows[STRESS] = np.nan
+    for state, fields in entry.solution.fields.items():
+        rows.loc[state, STRESS] = threads_local.largest_stress(fields)
+    return _tagged(rows, entry)
+
+
+def _tension(entry: Solved) -> pd.DataFrame:
+    return _tagged(threads_local.tension(entry), entry).assign(set="tension")
+
+
+def _tagged(rows: pd.DataFrame, entry: Solved) -> pd.DataFrame:
     for tag, value in reversed(entry.asked.tags.items()):
         rows.insert(0, tag, value)
     return rows
@@ -174,4 +199,13 @@ def _twist(study: Study) -> Iterator[StudyCase]:
 def _picture(study: Study) -> Iterator[StudyCase]:
     at = (CONTRACTION,)
     for rubber in MUSCLES:
-        yield _case(study, "picture", rubber, size=min(THREAD_SIZES), stops=at, fields_at=at)
+        for layers in (Layers.DISCRETE, Layers.SMEARED):
+            yield _case(
+                study,
+                "picture",
+                rubber,
+                size=min(THREAD_SIZES),
+                stops=at,
+                fields_at=at,
+                layers=layers,
+            )

@@ -4,107 +4,116 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 
 from geometry.cell import Box
 from workflow.figures import style
-from workflow.principal import principal_of_six
 from workflow.studies import Solved
+from workflow.studies.threads_local import nodes
 
 Array = NDArray[np.float64]
 HEIGHT = 0.25  # of the cut, in axial spacings: the threads of both layers lie apart there
 CELLS = 3  # drawn beside each other
+ACROSS, THROUGH = 80, 60  # points of a cell that the cut is drawn with
+NEAR_SURFACE = 1e-3  # mm: where the wall begins for an interpolation between nodes
+LEVELS = 16  # about as many shades
 COLOURS = {"NBR": "black", "silicone": "#d55e00"}
 MARKERS = {0.2: "o", 0.3: "s", 0.4: "^"}
-EDGES = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
 
 
-def cut(values: Array, level: Array) -> list[Array]:
-    """Polygons in which tetrahedra meet level = 0; ``values`` (4 n, k) and ``level`` at corners.
-
-    Each polygon has the values at its three or four corners, in order around its middle by the
-    first two of them.
-    """
-    polygons = []
-    for corners, height in zip(
-        values.reshape(-1, 4, values.shape[1]), level.reshape(-1, 4), strict=True
-    ):
-        a, b = EDGES[height[EDGES[:, 0]] * height[EDGES[:, 1]] < 0].T
-        if len(a) < 3:
-            continue
-        share = (height[a] / (height[a] - height[b]))[:, None]
-        points = corners[a] + share * (corners[b] - corners[a])
-        middle = points[:, :2].mean(axis=0)
-        turn = np.arctan2(*(points[:, :2] - middle).T)
-        polygons.append(points[np.argsort(turn)])
-    return polygons
-
-
-def cuts(shown: dict[str, Solved]) -> Figure:
-    """The wall across the axis with its threads, deformed, in the largest principal stress."""
-    figure, places = style.grid(style.FULL, 3.0, 1, max(len(shown), 1), gap=(0.9, 0.3))
+def local(shown: dict[str, Solved], rows: pd.DataFrame) -> Figure:
+    """The wall across the axis in the largest principal stress; the threads' tension below."""
+    figure, places = style.grid(
+        style.FULL, 4.3, 2, max(len(shown), 1), gap=(0.75, 0.6), height_ratios=[2, 1]
+    )
+    lower = []
     for k, (rubber, entry) in enumerate(shown.items()):
         _cut(figure, figure.add_subplot(places[0, k]), rubber, entry)
+        lower.append(figure.add_subplot(places[1, k]))
+        _tension(lower[-1], rows[rows["rubber"] == rubber])
+    style.grow(figure, bottom=style.LEGEND_ROW)
+    figure.legend(
+        handles=style.labelled(np.array(lower)), ncols=4, loc="lower center", fontsize=7.5
+    )
     return figure
 
 
 def _cut(figure: Figure, ax: Any, rubber: str, entry: Solved) -> None:
-    case = entry.asked.case
-    (state,) = entry.solution.fields
-    fields = entry.solution.fields[state]
-    corners, box = fields["corners"], Box(case.muscle)
-    largest = principal_of_six(fields["stress"])[:, 2]
-    # a little off the round share, so that no corner lies on the cut
-    level = corners[:, 2] - (HEIGHT + 1e-4) * box.spacing
-    polygons = cut(np.column_stack([corners[:, [0, 1, 3, 4]], largest]), level)
+    case, box = entry.asked.case, Box(entry.asked.case.muscle)
+    ((state, fields),) = entry.solution.fields.items()
+    values = LinearNDInterpolator(*nodes(fields, box))
+    inner, outer = case.muscle.inner_radius + NEAR_SURFACE, case.muscle.outer_radius - NEAR_SURFACE
     period = 2 * np.pi / box.sectors
-    faces, colours = [], []
-    for k in range(CELLS):
-        for polygon in polygons:
-            faces.append(_place(polygon[:, 2], polygon[:, 3], (k - CELLS / 2) * period))
-            colours.append(polygon[:, 4].mean())
-    drawn = PolyCollection(faces, array=np.array(colours), cmap="viridis", edgecolors="face")
-    drawn.set_linewidth(0.2)
-    ax.add_collection(drawn)
-    _threads(ax, entry, polygons, period)
+    half = CELLS / 2 * period
+    place = np.meshgrid(
+        np.linspace(inner, outer, THROUGH), np.linspace(-half, half, CELLS * ACROSS), indexing="ij"
+    )
+    x, y, stress = _at(values, box, *place)
+    levels = MaxNLocator(LEVELS, steps=[1, 2, 5, 10]).tick_values(stress.min(), stress.max())
+    drawn = ax.contourf(x, y, stress, levels, cmap="cividis")
+    ax.contour(x, y, stress, levels, colors="black", linewidths=0.2, linestyles="-")
+    if stress.min() < 0 < stress.max():
+        ax.contour(x, y, stress, [0], colors="black", linewidths=1.2)
+        ax.contourf(x, y, stress, [stress.min() - 1, 0], colors="none", hatches=["/////"])
+    for outline in _outlines(case, period):
+        ax.plot(*_at(values, box, *outline)[:2], color="white", linewidth=2.0)
+        ax.plot(*_at(values, box, *outline)[:2], color="black", linewidth=0.9)
     ax.set_aspect("equal")
-    ax.autoscale_view()
-    ax.grid(False)
+    ax.grid(visible=False)
     ax.set(xlabel="across the axis [mm]", ylabel="from the axis [mm]")
     eps, pressure = case.path.stops[state], case.path.held
     ax.set_title(f"{rubber}, {pressure:g} MPa, {100 * eps:g} %")
-    bar = figure.colorbar(drawn, ax=ax, orientation="horizontal", pad=0.22, aspect=30)
-    bar.set_label("largest principal stress of the rubber [MPa]")
+    bar = figure.colorbar(drawn, ax=ax, orientation="horizontal", pad=0.24, aspect=30)
+    below = " (hatched: below 0)" if stress.min() < 0 else ""
+    bar.set_label(f"largest principal stress [MPa]{below}")
+    bar.set_ticks(levels[::2])
 
 
-def _place(r: Array, t: Array, turn: float) -> Array:
-    return np.column_stack([r * np.sin(t + turn), r * np.cos(t + turn)])
+def _at(values: Any, box: Box, radius: Array, turn: Array) -> tuple[Array, Array, Array]:
+    """Where points of the cut are now, and their stress."""
+    period = 2 * np.pi / box.sectors
+    folded = (turn % period) * box.mean_radius
+    height = np.full_like(radius, HEIGHT * box.spacing)
+    r, moved, stress = np.moveaxis(values(np.stack([radius, folded, height], axis=-1)), -1, 0)
+    return r * np.sin(turn + moved), r * np.cos(turn + moved), stress
 
 
-def _threads(ax: Any, entry: Solved, polygons: list[Array], period: float) -> None:
-    """Sections of the round threads, moved with the rubber around them."""
-    case = entry.asked.case
-    assert case.muscle.braid is not None
-    assert case.thread is not None
-    points = np.concatenate(polygons)
-    shift = np.array([0, period, 0, period, 0])
-    around = np.concatenate([points + k * shift for k in (-1, 0, 1)])
-    moved = LinearNDInterpolator(around[:, :2] * [1, points[:, 0].mean()], around[:, 2:4])
-    radius = np.sqrt(case.thread.stiffness / (np.pi * case.numerics.spread.modulus))
+def _outlines(case: Any, period: float) -> list[tuple[Array, Array]]:
+    """Sections of the round threads in the cut, as radii and angles."""
+    size = np.sqrt(case.thread.stiffness / (np.pi * case.numerics.spread.modulus))
     turn = np.linspace(0, 2 * np.pi, 60)
-    layers = zip(
-        (HEIGHT, 1 - HEIGHT), case.muscle.layer_radii, case.muscle.braid.layer_angles, strict=True
-    )
-    for share, level, angle in layers:
-        r0 = level + radius * np.sin(turn)
-        t0 = share * period + radius * np.cos(turn) / (level * np.cos(angle))
-        at = moved(np.column_stack([r0, t0 * points[:, 0].mean()]))
-        for k in range(CELLS):
-            outline = _place(at[:, 0], at[:, 1], (k - CELLS / 2) * period)
-            ax.plot(*outline.T, color="white", linewidth=0.9)
+    found = []
+    for sense, level, angle in zip(
+        (1, -1), case.muscle.layer_radii, case.muscle.braid.layer_angles, strict=True
+    ):
+        for k in range(-CELLS, CELLS + 1):
+            middle = (k + sense * HEIGHT) * period
+            if abs(middle) < (CELLS / 2 - 0.2) * period:
+                wide = size / (level * np.cos(angle))
+                found.append((level + size * np.sin(turn), middle + wide * np.cos(turn)))
+    return found
+
+
+def _tension(ax: Any, rows: pd.DataFrame) -> None:
+    """Along the cell, where threads of the layers cross at the ends and in the middle."""
+    chosen = rows[rows["set"] == "tension"]
+    for (layers, layer), line in chosen.groupby(["layers", "layer"]):
+        ax.plot(
+            line["along the cell [1]"],
+            line["thread tension [N]"],
+            color="black" if layers == "discrete" else "0.6",
+            linestyle="-" if layer == 1 else (0, (4, 2)),
+            marker="o" if layers == "discrete" else "",
+            markersize=2.5,
+            label=f"{'threads' if layers == 'discrete' else 'smeared'}, "
+            f"{'inner' if layer == 1 else 'outer'} layer",
+        )
+    middle = chosen["thread tension [N]"].mean()
+    ax.set_ylim(0.92 * middle, 1.08 * middle)
+    ax.set(xlabel="along the cell [axial spacing]", ylabel="thread tension [N]", xlim=(0, 1))
 
 
 def correction(rows: pd.DataFrame) -> Figure:
