@@ -2,7 +2,8 @@
 
 The cases are those of the study itself, which have its EA, and the same again for every other EA by
 the membrane, which is fast and exact enough; the stress by the solid, which alone has it. Every EA
-makes one dataset, of which workflow/claims asks everything.
+makes one dataset, of which workflow/claims asks everything. What single threads change of the force
+of silicone is computed by the cell and is a group of the dataset of the study's EA.
 """
 
 from collections.abc import Iterator, Sequence
@@ -22,7 +23,7 @@ from workflow.claims.stress import SUMMARY, summary
 from workflow.config import StudiedMuscle, Study
 from workflow.plan import Place, plan
 from workflow.records import Curve
-from workflow.studies import Solved, StudyCase
+from workflow.studies import Solved, StudyCase, threads
 from workflow.study_error import StudyError
 
 if TYPE_CHECKING:
@@ -52,10 +53,14 @@ def cases(study: Study) -> list[PlacedCase]:
     if MUSCLE not in study.muscles or study.muscles[MUSCLE].thread is None:
         raise StudyError(f"muscles.{MUSCLE}: the claims are of this muscle, with threads")
     own = study.muscles[MUSCLE].thread.stiffness
-    return [
+    curves = [
         case
         for stiffness in sorted({own, *STIFFNESSES})
         for case in _with_stiffness(study, stiffness, stiffness == own)
+    ]
+    cells = threads.of_claim(study) if threads.MUSCLES["silicone"] in study.muscles else []
+    return curves + [
+        PlacedCase(cell.case, cell.label, cell.tags, stiffness=own, own=True) for cell in cells
     ]
 
 
@@ -106,8 +111,10 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
     return scorecard(trees, own)
 
 
-def tree(solved: Sequence[Solved]) -> xr.DataTree:
-    """The dataset of some cases, with the group of the stress."""
+def tree(all_solved: Sequence[Solved]) -> xr.DataTree:
+    """The dataset of some cases, with the groups of the stress and of single threads."""
+    solved = [s for s in all_solved if s.asked.place]
+    cells = [s for s in all_solved if not s.asked.place]
     muscles = {s.asked.place.muscle: s.asked.muscle for s in solved}
     curves = [
         Curve(s.asked.place, s.asked.case.key, s.asked.case, s.solution, s.asked.case.path.stops)
@@ -120,6 +127,9 @@ def tree(solved: Sequence[Solved]) -> xr.DataTree:
             ["muscle", "model", "variant", "pressure", "contraction"]
         )
         found["stress"] = xr.DataTree(rows.to_xarray())
+    if cells:
+        change = threads.change_by_wall(cells).rename_axis("wall").to_xarray()
+        found["threads"] = xr.DataTree(xr.Dataset({"change": change}))
     return found
 
 

@@ -75,6 +75,12 @@ def walls(nbr, silicone, quantity="force"):
     return xr.DataTree.from_dict({"isotonic": group("isotonic", curves, (0.3,))})
 
 
+def with_threads(tree, change):
+    """The same with what single threads change of silicone's force, by thickness."""
+    data = xr.Dataset({"change": ("wall", np.array(change, dtype=float))}, {"wall": list(WALLS)})
+    return tree.assign(threads=xr.DataTree(data))
+
+
 def pulled(p):
     """Force with a threshold of 0.15 MPa, bent below."""
     return np.where(p < 0.15, -60 * np.sqrt(np.maximum(0.15 - p, 0) / 0.15), 1600 * (p - 0.15))
@@ -202,6 +208,8 @@ CASES = [
     ("C8c", walls(SOFT_PEAK, WALL_FALLS), NO),
     ("C8d", walls(WALL_FALLS, SOFT_PEAK), YES),
     ("C8d", walls(WALL_FALLS, [508, 502, 496, 491]), NO),
+    ("C8d", with_threads(walls(WALL_FALLS, [508, 502, 496, 491]), [-1, 0.1, -2, -3]), NO),
+    ("C8d", with_threads(walls(WALL_FALLS, [508, 502, 496, 491]), [-9, 0.1, -2, -3]), YES),
     ("C9a", walls([0.15, 0.13, 0.11, 0.09], [0.23, 0.22, 0.21, 0.2], "contraction"), YES),
     ("C9a", walls([0.15, 0.13, 0.11, 0.09], [0.23, 0.2, 0.2, 0.2], "contraction"), PARTLY),
     ("C9a", walls([0.15, 0.1, 0.09, 0.09], [0.23, 0.2, 0.2, 0.2], "contraction"), NO),

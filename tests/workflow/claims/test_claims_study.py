@@ -15,7 +15,7 @@ STUDY = load(Path(__file__).parents[3] / "config/config.yaml")
 
 def test_the_study_has_its_own_cases_and_the_fast_ones_with_other_threads():
     found = claims.cases(STUDY)
-    own = {case.case.key for case in found if case.own}
+    own = {case.case.key for case in found if case.own and case.place}
     assert own <= set(plan(STUDY).cases)
     for ea in (50, 150, 315, 594, 650):
         stressed = [c for c in found if c.stiffness == ea and c.case.fields_at]
@@ -28,6 +28,13 @@ def test_the_study_has_its_own_cases_and_the_fast_ones_with_other_threads():
             assert case.case.thread.stiffness == case.stiffness
     per_stiffness = {sum(c.stiffness == ea for c in others) for ea in (50, 150, 594, 650)}
     assert len(per_stiffness) == 1
+
+
+def test_single_threads_are_asked_for_silicone_of_all_walls():
+    cells = [case for case in claims.cases(STUDY) if not case.place]
+    assert {c.case.muscle.wall_thickness for c in cells} == {1.5, 2, 2.5, 3}
+    assert {c.case.effects.layers for c in cells} == {"discrete", "smeared"}
+    assert all(c.own and c.case.model == "cell" for c in cells)
 
 
 def triangles(stress_of):
