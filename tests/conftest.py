@@ -19,7 +19,7 @@ from solver.material import MooneyRivlin, Thread
 from solver.record import Solution
 from solver.solve import composition, flags, solve, waypoint_text
 
-LIMITS = freefem.Limits(wall_time=60, memory=4000)
+LIMITS = freefem.Limits(wall_time=300, memory=4000)  # a busy machine takes its time
 Rows = list[dict[str, float]]
 
 

@@ -79,6 +79,20 @@ def test_discrete_threads_pull_a_little_less(states):
     assert (np.diff(np.abs(change)) < 0).all()
 
 
+@pytest.mark.slow
+def test_discreteness_is_what_finer_meshes_converge_to(states):
+    """On 3,900 tetrahedra -0.382, -0.128, -0.082 N; docs/decisions/0007 says why PHYSICS has more.
+
+    With threads of constant direction over their depth it would be -0.64 N at 0 %.
+    """
+    mesh = CellMesh(thread_size=0.8, body_size=0.25)
+    single, smeared = (
+        states(mesh=mesh, effects=Effects(layers=x)) for x in ("discrete", "smeared")
+    )
+    change = single["force"] - smeared["force"]
+    assert change == pytest.approx([-0.382, -0.128, -0.082], abs=0.05)
+
+
 def test_rubber_bulges_between_threads(states, silicone):
     nbr, soft = states()["bulge"], states(rubber=silicone)["bulge"]
     assert (nbr > 0).all()
@@ -148,7 +162,7 @@ def test_a_wire_has_no_limit(make_case, solve_case):
     """
     sizes, found = (1.5, 1.0), []
     for size in sizes:
-        mesh = CellMesh(thread_size=size)
+        mesh = CellMesh(thread_size=size, body_size=0.25)
         path = LoadPath(kind="isobaric", held=0.3, stops=(0.0,))
         case = make_case(
             model="cell",
