@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 
@@ -20,6 +20,12 @@ CELLS = 3  # drawn beside each other
 ACROSS, THROUGH = 80, 60  # points of a cell that the cut is drawn with
 NEAR_SURFACE = 1e-3  # mm: where the wall begins for an interpolation between nodes
 LEVELS = 16  # about as many shades
+WALL = 2.0  # mm, of the panel of changes and of claim C8
+MESH_STYLE: dict[str, dict[str, Any]] = {
+    "discrete": {"marker": "o", "linestyle": "-", "label": "threads"},
+    "smeared": {"marker": "s", "linestyle": (0, (4, 2)), "label": "smeared"},
+    "wire": {"marker": "X", "linestyle": ":", "label": "wire of zero thickness"},
+}
 COLOURS = {"NBR": "black", "silicone": "#d55e00"}
 MARKERS = {0.2: "o", 0.3: "s", 0.4: "^"}
 
@@ -52,7 +58,7 @@ def _cut(figure: Figure, ax: Any, rubber: str, entry: Solved) -> None:
         np.linspace(inner, outer, THROUGH), np.linspace(-half, half, CELLS * ACROSS), indexing="ij"
     )
     x, y, stress = _at(values, box, *place)
-    levels = MaxNLocator(LEVELS, steps=[1, 2, 5, 10]).tick_values(stress.min(), stress.max())
+    levels = MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(stress.min(), stress.max())
     drawn = ax.contourf(x, y, stress, levels, cmap="cividis")
     ax.contour(x, y, stress, levels, colors="black", linewidths=0.2, linestyles="-")
     if stress.min() < 0 < stress.max():
@@ -69,7 +75,7 @@ def _cut(figure: Figure, ax: Any, rubber: str, entry: Solved) -> None:
     bar = figure.colorbar(drawn, ax=ax, orientation="horizontal", pad=0.24, aspect=30)
     below = " (hatched: below 0)" if stress.min() < 0 else ""
     bar.set_label(f"largest principal stress [MPa]{below}")
-    bar.set_ticks(levels[::2])
+    bar.set_ticks(MaxNLocator(6).tick_values(levels[1], levels[-2])[1:-1])
 
 
 def _at(values: Any, box: Box, radius: Array, turn: Array) -> tuple[Array, Array, Array]:
@@ -117,19 +123,25 @@ def _tension(ax: Any, rows: pd.DataFrame) -> None:
 
 
 def correction(rows: pd.DataFrame) -> Figure:
-    """What single threads change in the force; silicone over the wall; the mesh."""
-    figure, places = style.grid(style.FULL, 2.6, 1, 3, gap=(0.75, 0.3))
-    axes = [figure.add_subplot(places[0, k]) for k in range(3)]
-    _change(axes[0], rows)
-    _walls(axes[1], rows)
-    _meshes(axes[2], rows)
+    """What single threads change in the force; silicone over the wall; meshes, and the wire."""
+    figure, axes = style.panels(style.FULL, 5.4, 2, 2, gap=(0.85, 0.65))
+    _change(axes[0, 0], rows)
+    _walls(axes[0, 1], rows)
+    _meshes(axes[1, 0], rows, "force [N]")
+    _meshes(axes[1, 1], rows, "smallest det F at corners [1]")
+    axes[1, 1].axhline(0, color="black", linewidth=0.7)
+    axes[1, 1].set_ylabel("smallest det F [1], below 0 inside out")
+    axes[1, 0].legend(fontsize=7.5)
     return figure
 
 
+def _of_correction(rows: pd.DataFrame) -> pd.DataFrame:
+    return rows[rows["set"] == "correction"]
+
+
 def _change(ax: Any, rows: pd.DataFrame) -> None:
-    chosen = rows[
-        (rows["set"] == "correction") & (rows["layers"] == "discrete") & (rows["wall [mm]"] == 2)
-    ]
+    rows = _of_correction(rows)
+    chosen = rows[(rows["layers"] == "discrete") & (rows["wall [mm]"] == WALL)]
     for (rubber, pressure), curve in chosen.groupby(["rubber", "pressure [MPa]"]):
         ax.plot(
             100 * curve["contraction [1]"],
@@ -139,42 +151,46 @@ def _change(ax: Any, rows: pd.DataFrame) -> None:
             linestyle="-" if rubber == "NBR" else (0, (4, 2)),
             label=f"{rubber}, {pressure:g} MPa",
         )
-    ax.set(xlabel="contraction [%]", ylabel="threads − smeared layers [N]")
-    ax.set_title("wall 2 mm")
-    ax.legend(fontsize=6.5)
+    ax.axhline(0, color="black", linewidth=0.7)
+    low, high = chosen["change [N]"].min(), chosen["change [N]"].max()
+    if low < high:
+        ax.set_ylim(top=high + 0.45 * (high - low))  # room for the legend
+    ax.set(xlabel="contraction [%]", ylabel="force of threads − smeared [N]")
+    ax.set_title(f"what single threads change, wall {WALL:g} mm")
+    ax.legend(fontsize=7, ncols=2, loc="upper right")
 
 
 def _walls(ax: Any, rows: pd.DataFrame) -> None:
-    chosen = rows[
-        (rows["set"] == "correction")
-        & (rows["rubber"] == "silicone")
-        & np.isclose(rows["contraction [1]"], 0.1)
-    ]
-    for (layers, pressure), curve in chosen.groupby(["layers", "pressure [MPa]"]):
+    """Claim C8: whether silicone pulls most at the wall of 2 mm."""
+    rows = _of_correction(rows)
+    chosen = rows[(rows["rubber"] == "silicone") & np.isclose(rows["contraction [1]"], 0.1)]
+    for (layers, pressure), curve in chosen.groupby(["layers", "pressure [MPa]"], sort=False):
+        curve = curve.sort_values("wall [mm]")
+        at = curve.loc[curve["wall [mm]"] == WALL, "force [N]"]
+        single = layers == "discrete"
         ax.plot(
             curve["wall [mm]"],
-            curve["force [N]"],
-            color="black" if layers == "discrete" else "0.55",
-            marker=MARKERS.get(float(pressure), "x"),
-            linestyle="-" if layers == "discrete" else (0, (4, 2)),
-            label=f"{layers}, {pressure:g} MPa",
+            curve["force [N]"] - (at.iloc[0] if len(at) else 0),
+            color="black" if single else "0.75",
+            linewidth=1.0 if single else 4.0,
+            zorder=3 if single else 2,
+            marker=MARKERS.get(float(pressure), "x") if single else "",
+            linestyle="-",
+            label=f"threads, {pressure:g} MPa" if single else "smeared" * (pressure == 0.3),
         )
-    ax.set(xlabel="wall thickness [mm]", ylabel="force [N]")
-    ax.set_title("silicone, 10 %")
-    ax.legend(fontsize=6.5)
+    ax.axhline(0, color="black", linewidth=0.7)
+    ax.set(xlabel="wall thickness [mm]", ylabel=f"force − that at {WALL:g} mm [N]")
+    ax.set_title("silicone, 10 %: most at 2 mm? (C8)")
+    ax.legend(fontsize=7.5)
 
 
-def _meshes(ax: Any, rows: pd.DataFrame) -> None:
+def _meshes(ax: Any, rows: pd.DataFrame, quantity: str) -> None:
     chosen = rows[(rows["set"] == "mesh") & np.isclose(rows["contraction [1]"], 0.0)]
     for layers, curve in chosen.groupby("layers"):
-        ax.plot(
-            curve["size"],
-            curve["force [N]"],
-            marker={"discrete": "o", "smeared": "s", "wire": "X"}[str(layers)],
-            linestyle={"discrete": "-", "smeared": (0, (4, 2)), "wire": ":"}[str(layers)],
-            color="black",
-            label={"discrete": "threads", "smeared": "smeared", "wire": "wire"}[str(layers)],
-        )
-    ax.set(xlabel="mesh size [thread radii]", ylabel="force [N]")
-    ax.set_title("NBR, 0.3 MPa, 0 %")
-    ax.legend(fontsize=6.5)
+        ax.plot(curve["size"], curve[quantity], color="black", **MESH_STYLE[str(layers)])
+    ax.set(xscale="log", xlabel="mesh size h at a thread [thread radii]", ylabel=quantity)
+    sizes = sorted(chosen["size"].unique())
+    ax.set_xticks(sizes, [f"{size:g}" for size in sizes])
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    ax.tick_params(axis="x", which="minor", bottom=False)
+    ax.set_title("NBR, 0.3 MPa, 0 %: meshes")
