@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from geometry.cell import CellMesh
 from geometry.meridian import MeridianMesh
 from geometry.muscle import Muscle
 from geometry.section import SectionMesh
@@ -48,6 +49,11 @@ COARSE: dict[str, dict[str, MeridianMesh | SectionMesh]] = {  # not of the defau
         "coarser": SectionMesh(cap_step=2, growth=2, body_step=3),
         "coarsest": SectionMesh(cap_step=4, growth=3, body_step=4),
     },
+}
+CELLS = {  # few, as they are dear; their error is nearly all that they have no caps
+    "coarser": CellMesh(thread_size=1.5, body_size=0.4),
+    "1/1": CellMesh(),
+    "finer": CellMesh(thread_size=0.65, body_size=0.25),
 }
 STEPS = (0.1, 0.05, 0.02, 0.005)  # of contraction, beside STEP
 TOLERANCES = tuple(10.0**-k for k in range(3, 11))
@@ -121,6 +127,8 @@ def settings() -> Iterator[_Setting]:
         for tolerance in TOLERANCES:
             numerics = Numerics(newton=Newton(tolerance=tolerance))
             yield _Setting("tolerance", model, "1/1", numerics, stops=stops())
+    for name, cell in CELLS.items():
+        yield _Setting("mesh", "cell", name, Numerics(cell=cell), stops=stops())
     butt = Effects(end=End.BUTT, threads=ThreadLaw.TWO_WAY)
     for m in BUTT_FAMILY:
         numerics, few = _refined("section", m), stops(0.05, BUTT_LARGEST)
@@ -151,7 +159,7 @@ def _normal(study: Study) -> Iterator[StudyCase]:
         )
         label = f"{setting.model} {setting.name}".strip()
         yield StudyCase(curve, f"{label}, {setting.set}", setting.tags("curve"))
-        if setting.set == "mesh" and setting.model != "geometric":
+        if setting.set == "mesh" and setting.model not in ("geometric", "cell"):
             case = replace(curve, path=threshold)
             yield StudyCase(case, f"{label}, threshold", setting.tags("threshold"))
 

@@ -20,7 +20,7 @@ from workflow.studies.accuracy_errors import (
 STUDY = Path(__file__).parents[3] / "config" / "config.yaml"
 ORDER = {"membrane": 4.0, "solid": 2.5}
 COEFFICIENT = {"membrane": 0.1, "solid": -2.0}  # N, error of the default mesh
-MODELLING = {"geometric": 200.0, "cylinder": 20.0, "membrane": 4.0, "solid": 0.0}  # N
+MODELLING = {"geometric": 200.0, "cylinder": 20.0, "membrane": 4.0, "solid": 0.0, "cell": 19.0}  # N
 LARGEST = 700.0
 
 
@@ -89,7 +89,7 @@ def table() -> pd.DataFrame:
 
 def test_every_setting_has_a_row(table):
     counts = table["set"].value_counts()
-    assert counts["mesh"] == 2 + 2 * (5 + 2)
+    assert counts["mesh"] == 2 + 2 * (5 + 2) + 3
     assert counts["steps"] == 2 * 4
     assert counts["tolerance"] == 2 * 8
     assert not table.duplicated(["set", "model", "mesh", "tolerance", "states"]).any()
