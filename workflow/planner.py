@@ -8,14 +8,14 @@ A scene that names its ``models`` gets those; its ``effects`` hold for it all th
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
-from math import inf, isnan, nan
+from math import inf, isnan
 
 from solver.effects import EFFECTS, KINDS, READ_BY, Effects, active
 from solver.refusal import UnsolvableCase
 from workflow import magnitude
 from workflow.config import Study, Variant
 from workflow.schema import QUANTITIES, Scene
-from workflow.weights import MESHES, Weights, load
+from workflow.weights import MESHES, Weight, Weights, load
 
 TOLERANCE = 0.01  # share of the curve's largest value, where a scene names none
 SHORTEST = 20 / 300  # diameter / length of the muscles that were weighed: caps act in proportion
@@ -45,7 +45,10 @@ LADDER = {  # cheapest first
         Rung("solid, finer", "solid", "finer", None, "mesh of solid"),
     )
 }
-OF_CELL = Rung("cell", "cell", "default", None, "")  # off the ladder: it has no caps, and is dear
+# Off the ladder, whose models all smear the threads: it has no caps, and is dear.
+OF_CELL = Rung("cell", "cell", "default", "membrane", "end_caps")
+DISCRETE = "discrete_threads"
+SMEARED = "isobaric", DISCRETE  # path and effect: weighed at constant pressure only
 
 
 @dataclass(frozen=True)
@@ -149,15 +152,16 @@ def _estimate(
     refused = refusal(rung.model, scene)
     if rung.model == "geometric" and any(study.muscles[m].thread is None for m in scene.muscles):
         refused = refused or "needs a braid"
-    if rung is OF_CELL:
-        if not refused and scene.effects.get("discrete_threads") != "on":
-            refused = "only where discrete_threads is on"
-        return Estimate(rung, nan, nan, False, refused)
+    if rung is OF_CELL and scene.effects.get(DISCRETE) != "on":
+        refused = refused or f"only where {DISCRETE} is on"
     errors, seconds, missing = [], [], False
     for regime in touched:
         error, lost = _error(study, scene, rung, regime, weights)
         errors.append(error)
         missing |= lost
+        if rung is OF_CELL:
+            seconds.append(weights[(regime, *SMEARED)].seconds_with)
+            continue
         last = weights[regime, scene.path, rung.step]
         seconds.append(last.seconds_without if rung.above else last.seconds_with)
     return Estimate(rung, max(errors), max(seconds), missing, refused)
@@ -167,23 +171,13 @@ def _error(
     study: Study, scene: Scene, rung: Rung, regime: str, weights: Weights
 ) -> tuple[float, bool]:
     """Expected error of a rung: the sum of the steps down to it; and whether states are lost."""
-    total, missing = 0.0, False
+    size = magnitude.against(study, scene, weights, regime)
+    total = _of_smearing(study, scene, weights, regime, size) if rung is not OF_CELL else 0.0
+    missing = False
     at: Rung | None = rung
     while at is not None:
         weight = weights[regime, scene.path, at.step]
-        size = magnitude.against(study, scene, weights, regime)
-        change = max(
-            (
-                value * (size if name == "force" else 1)
-                for name in _judged(scene)
-                if not isnan(value := getattr(weight, name))
-            ),
-            default=inf,
-        )
-        if at.step in CAPS:
-            change *= max(_stoutness(study, name) for name in scene.muscles)
-        if at.step in scene.effects:  # forced on or off: no error
-            change = 0.0
+        change = _change(study, scene, weight, size)
         if at.above is None:
             total += change / ORDER
         else:
@@ -191,6 +185,31 @@ def _error(
         missing |= at.above is not None and weight.missing > 0
         at = LADDER[at.above] if at.above else None
     return total, missing
+
+
+def _of_smearing(study: Study, scene: Scene, weights: Weights, regime: str, size: float) -> float:
+    """What smeared threads change; of a contraction the same share as of the force."""
+    if not any(study.muscles[name].thread for name in scene.muscles):
+        return 0.0
+    weight = weights[(regime, *SMEARED)]
+    return _change(study, scene, replace(weight, contraction=weight.force), size)
+
+
+def _change(study: Study, scene: Scene, weight: Weight, size: float) -> float:
+    """What leaving out an effect changes in a scene; ``size`` as of workflow/magnitude.py."""
+    if weight.effect in scene.effects:  # forced on or off: no error
+        return 0.0
+    change = max(
+        (
+            value * (size if name == "force" else 1)
+            for name in _judged(scene)
+            if not isnan(value := getattr(weight, name))
+        ),
+        default=inf,
+    )
+    if weight.effect in CAPS:
+        change *= max(_stoutness(study, name) for name in scene.muscles)
+    return change
 
 
 def _judged(scene: Scene) -> list[str]:

@@ -97,7 +97,8 @@ def group() -> Any:
     data = xr.Dataset(coords={"regime": regimes, "path": paths, "effect": effects})
     for name, (unit, long_name) in NUMBERS.items():
         values = [
-            [[getattr(known[r, p, e], name) for e in effects] for p in paths] for r in regimes
+            [[getattr(known.get((r, p, e)), name, nan) for e in effects] for p in paths]
+            for r in regimes
         ]
         data[name] = (("regime", "path", "effect"), values, {"units": unit, "long_name": long_name})
     data.attrs["origin"] = origin()

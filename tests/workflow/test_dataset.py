@@ -38,7 +38,7 @@ def tree(study, tmp_path_factory):
 
 def test_effects_stand_in_the_whole_dataset():
     group = dataset.build([], {}, effects=True)["effects"]
-    assert group.sizes == {"regime": 5, "path": 3, "effect": 12}
+    assert group.sizes == {"regime": 5, "path": 3, "effect": 13}
     assert float(group.force.sel(regime="normal", path="isobaric", effect="end_caps")) > 0.01
     assert group.attrs["origin"].startswith("study of effects of ")
 

@@ -1,8 +1,9 @@
 """What does leaving out an effect change, and save? One effect off at a time, in five regimes.
 
 Each effect is compared within the fullest model that can be had with and without it: what only the
-solid has, in the solid; what the membrane adds to the cylinder, between these two. The regimes are
-the normal condition and four corners; each is followed at constant pressure, contraction and load.
+solid has, in the solid; what the membrane adds to the cylinder, between these two; single threads
+in the cell, against its smeared layers. The regimes are the normal condition and four corners; each
+is followed at constant pressure, contraction and load, the dear cell at constant pressure only.
 """
 
 from collections.abc import Sequence
@@ -82,6 +83,8 @@ SETUPS = {
     "cylinder, rigid": Setup(model="cylinder", effects=Effects(stretch="rigid")),
     "cylinder, no rubber": Setup(model="cylinder", effects=Effects(rubber="none")),
     "geometric": Setup(model="geometric"),
+    "cell": Setup(model="cell"),
+    "cell, smeared": Setup(model="cell", effects=Effects(layers="smeared")),
 }
 
 
@@ -103,13 +106,20 @@ def cases(study: Study) -> list[StudyCase]:
         for name, regime in REGIMES.items()
         for path in regime.paths()
         for setup_name, setup in SETUPS.items()
+        if setup.model != "cell" or path.kind is PathKind.ISOBARIC  # it takes too long
     ]
 
 
 def _case(study: Study, regime: Regime, setup: Setup, path: LoadPath) -> Case:
     muscle = study.muscles[regime.muscle]
+    numerics = replace(Numerics(), **MESHES[setup.mesh])
+    if regime.stiffness and muscle.thread:  # a stiffer material: the threads have as little room
+        stiffer = numerics.spread.modulus * regime.stiffness / muscle.thread.stiffness
+        numerics = replace(numerics, spread=replace(numerics.spread, modulus=stiffer))
     if setup.model == "geometric" and path.zero_force:
         path = LoadPath(kind=path.kind, held=path.held, stops=path.stops)  # Eq. (1) has none
+    if regime.stiffness and setup.model == "cell":  # a layer slackens further on: slow
+        path = replace(path, stops=path.stops[:3])
     return Case(
         muscle=muscle.muscle,
         rubber=muscle.rubber,
@@ -117,5 +127,5 @@ def _case(study: Study, regime: Regime, setup: Setup, path: LoadPath) -> Case:
         path=path,
         model=setup.model,
         effects=setup.effects,
-        numerics=replace(Numerics(), **MESHES[setup.mesh]),
+        numerics=numerics,
     )

@@ -24,6 +24,7 @@ SWITCHES = {  # what is left out: (setup with it, setup without); see workflow/s
     "twist": ("cylinder, twisting", "cylinder"),
     "thread_stretch": ("cylinder", "cylinder, rigid"),
     "rubber": ("cylinder", "cylinder, no rubber"),
+    "discrete_threads": ("cell", "cell, smeared"),
     "all but pressure on the net": ("cylinder", "geometric"),
 }
 
@@ -48,6 +49,7 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
             {"regime": regime, "path": path, "effect": effect} | row(setups, *pair)
             for (regime, path), setups in found.items()
             for effect, pair in SWITCHES.items()
+            if setups.keys() >= set(pair)
         ]
     )
 
