@@ -21,7 +21,9 @@ from numpy.typing import NDArray
 
 from solver import record
 from solver.case import MESHED, Case
+from solver.effects import Effects
 from solver.load_path import PathKind
+from solver.numerics import Numerics
 from solver.record import Solution
 from workflow.aside import aside
 from workflow.study_error import StudyError
@@ -61,9 +63,18 @@ def error(case: Case, solution: Solution, variable: str) -> NDArray[np.float64]:
 
 def _share(case: Case, variable: str) -> float:
     """From the mesh of the case or the next coarser one of its family."""
-    if variable not in ERRORS or case.model not in PART:
+    if case.model not in PART:
         return np.nan
-    settings, refinement = settings_of(case)
+    return share_of(case.model, case.effects, case.numerics, variable)
+
+
+def share_of(model: str, effects: Effects, numerics: Numerics, variable: str = "force") -> float:
+    """Largest error found on a mesh of a model, as a share; 0 without a mesh, NaN if not known."""
+    if model not in PART:
+        return np.nan if model in MESHED else 0.0
+    if variable not in ERRORS:
+        return np.nan
+    settings, refinement = settings_of(model, effects, numerics)
     finest = None
     for bound in _bounds().get(settings, ()):
         if bound.refinement <= refinement:
@@ -71,13 +82,13 @@ def _share(case: Case, variable: str) -> float:
     return finest.errors[variable] if finest else np.nan
 
 
-def settings_of(case: Case) -> tuple[tuple[str, ...], int]:
+def settings_of(model: str, effects: Effects, numerics: Numerics) -> tuple[tuple[str, ...], int]:
     """What names a family of meshes in the table, as it stands there; and the refinement."""
-    mesh = getattr(case.numerics, PART[case.model])
-    end = str(case.effects.end) if case.model == "solid" else ""
+    mesh = getattr(numerics, PART[model])
+    end = str(effects.end) if model == "solid" else ""
     steps = (f"{value:g}" for value in (mesh.cap_step, mesh.growth, mesh.body_step))
     rows = " ".join(map(str, getattr(mesh, "rows", ())))
-    return (case.model, end, *steps, rows), mesh.refinement
+    return (model, end, *steps, rows), mesh.refinement
 
 
 @cache

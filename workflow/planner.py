@@ -1,9 +1,13 @@
 """Which model, effects and mesh a scene gets: the cheapest that is exact enough for it.
 
-Pure: no file but the measured weights (workflow/weights.py) is read, nothing is solved. The models
-form a ladder; going down it leaves out one effect after the other, and the error of a step is what
-leaving that effect out has changed in the study of effects, in the regimes that the scene touches.
-A scene that names its ``models`` gets those; its ``effects`` hold for it all the same.
+Pure: no files but the measured weights and errors (weights.csv, discretisation.csv) are read, and
+nothing is solved. The models form a ladder; going down it leaves out one effect after the other,
+and the error of a step is what leaving that effect out has changed in the study of effects, in the
+regimes that the scene touches. A scene that names its ``models`` gets those; its ``effects`` hold
+for it all the same.
+
+The mesh alone may take a quarter of the tolerance (workflow/discretisation.csv), so the mesh is the
+coarsest that does; the default meshes are those for the default tolerance.
 """
 
 from collections.abc import Iterator, Mapping
@@ -11,15 +15,18 @@ from dataclasses import dataclass, fields, replace
 from math import inf, isnan
 
 from solver.effects import EFFECTS, KINDS, READ_BY, Effects, active
+from solver.numerics import Numerics
 from solver.refusal import UnsolvableCase
 from workflow import magnitude
 from workflow.config import Study, Variant
+from workflow.discretisation import share_of
 from workflow.schema import QUANTITIES, Scene
 from workflow.weights import MESHES, Weight, Weights, load
 
 TOLERANCE = 0.01  # share of the curve's largest value, where a scene names none
 SHORTEST = 20 / 300  # diameter / length of the muscles that were weighed: caps act in proportion
 CAPS = ("end_caps", "cap_geometry")
+OF_MESH = 0.25  # share of the tolerance that the mesh may take
 ORDER = 3  # a mesh twice as fine leaves a third of the difference, or less (second order)
 
 
@@ -57,6 +64,7 @@ class Estimate:
 
     rung: Rung
     error: float  # expected, share of the largest value; NaN if never measured
+    mesh_error: float  # what of it is the mesh's, as the study of accuracy has found; NaN if not
     seconds: float  # of one curve of the study of effects
     missing: bool  # whether it loses states somewhere in these regimes
     refused: str = ""  # why it cannot serve, whatever the error
@@ -92,7 +100,7 @@ def choose(study: Study, scene: Scene, weights: Weights | None = None) -> Choice
     chosen = None
     if scene.models is None:
         able = [e for e in estimates if not e.refused]
-        good = [e for e in able if not e.missing and e.error <= tolerance]
+        good = [e for e in able if not e.missing and is_enough(e, tolerance)]
         best = sorted(able, key=lambda e: (e.missing, isnan(e.error), e.error))
         chosen = (good or best or [None])[0]
     models = scene.models or ((chosen.rung.model,) if chosen else ())
@@ -102,6 +110,11 @@ def choose(study: Study, scene: Scene, weights: Weights | None = None) -> Choice
         for label, made in [_variant(study.variants[name], name, scene, chosen)]
     }
     return Choice(models, variants, touched, tolerance, estimates, chosen)
+
+
+def is_enough(estimate: Estimate, tolerance: float) -> bool:
+    """Whether a rung is exact enough, and its mesh fine enough."""
+    return estimate.error <= tolerance and estimate.mesh_error <= OF_MESH * tolerance
 
 
 def switched(effects: Effects, wanted: Mapping[str, str]) -> Effects:
@@ -164,7 +177,8 @@ def _estimate(
             continue
         last = weights[regime, scene.path, rung.step]
         seconds.append(last.seconds_without if rung.above else last.seconds_with)
-    return Estimate(rung, max(errors), max(seconds), missing, refused)
+    mesh_error = share_of(rung.model, Effects(), replace(Numerics(), **MESHES[rung.mesh]))
+    return Estimate(rung, max(errors), mesh_error, max(seconds), missing, refused)
 
 
 def _error(

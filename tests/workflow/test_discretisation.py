@@ -56,7 +56,8 @@ def test_every_curve_of_the_scenes_has_a_known_error_that_is_small(planned):
 
 def test_defaults_are_in_the_table(make_case):
     for model in discretisation.PART:
-        settings, refinement = discretisation.settings_of(make_case(model=model))
+        case = make_case(model=model)
+        settings, refinement = discretisation.settings_of(model, case.effects, case.numerics)
         bounds = discretisation._bounds().get(settings, [])
         assert refinement in [bound.refinement for bound in bounds], AGAIN
 

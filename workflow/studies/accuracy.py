@@ -7,7 +7,8 @@ errors that are kept apart, all as shares of the curve's largest force:
 - modelling: against what the fullest model converges to (``solid``);
 - deviation from each reference map, which no mesh and no model removes.
 
-Every curve of the scenes is solved on a mesh twice as fine too: its own discretisation error.
+Every curve of the scenes is solved on a mesh twice as fine too: its own discretisation error; that
+of the solid also from the planner's coarser mesh.
 Where the solution is smooth (a bare tube whose ends slide) the order is that of theory; the ends
 of the muscle spoil it. Elements are quadratic only. Costs are measured by workflow/benchmark.py.
 """
@@ -28,6 +29,7 @@ from solver.numerics import Newton, Numerics
 from workflow.config import Study
 from workflow.plan import plan
 from workflow.studies import Solved, StudyCase
+from workflow.weights import MESHES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,7 +48,7 @@ COARSE: dict[str, dict[str, MeridianMesh | SectionMesh]] = {  # not of the defau
         "coarsest": MeridianMesh(cap_step=3, growth=2.5, body_step=4),
     },
     "solid": {
-        "coarser": SectionMesh(cap_step=2, growth=2, body_step=3),
+        "coarser": MESHES["coarser"]["section"],  # the planner's
         "coarsest": SectionMesh(cap_step=4, growth=3, body_step=4),
     },
 }
@@ -193,18 +195,19 @@ def _scenes(study: Study) -> Iterator[StudyCase]:
             continue
         part = PART[case.model]
         own = getattr(case.numerics, part)
-        finer = replace(own, refinement=2 * own.refinement)
-        numerics = replace(case.numerics, **{part: finer})
-        for each, fields in ((case, case.fields_at), (replace(case, numerics=numerics), ())):
-            mesh = getattr(each.numerics, part)
-            setting = _Setting(
-                "scenes",
-                case.model,
-                planned.label,
-                each.numerics,
-                case.effects,
-                refinement=mesh.refinement,
-            )
-            solved = replace(each, fields_at=fields)
-            label = f"{planned.label}, mesh 1/{mesh.refinement}"
-            yield StudyCase(solved, label, setting.tags("curve"))
+        yield from _pair(planned.label, case, own)
+        if own == SectionMesh():
+            yield from _pair(f"{planned.label}, coarser", case, MESHES["coarser"][part])
+
+
+def _pair(name: str, case: Case, mesh: MeridianMesh | SectionMesh) -> Iterator[StudyCase]:
+    """A curve on a mesh and on one twice as fine."""
+    finer = replace(mesh, refinement=2 * mesh.refinement)
+    for each in (mesh, finer):
+        numerics = replace(case.numerics, **{PART[case.model]: each})
+        fields = case.fields_at if numerics == case.numerics else ()  # a record that there is
+        setting = _Setting(
+            "scenes", case.model, name, numerics, case.effects, refinement=each.refinement
+        )
+        solved = replace(case, numerics=numerics, fields_at=fields)
+        yield StudyCase(solved, f"{name}, mesh 1/{each.refinement}", setting.tags("curve"))
