@@ -62,7 +62,20 @@ def test_the_choice_is_the_cheapest_that_is_exact_enough(study, name, tolerance)
     for estimate in choice.estimates:
         if estimate is choice.chosen:
             break
-        assert estimate.refused or estimate.missing or not estimate.error <= tolerance
+        enough = estimate.error <= tolerance and estimate.mesh_error <= tolerance / 4
+        assert estimate.refused or estimate.missing or not enough
+
+
+def test_the_mesh_takes_a_quarter_of_the_tolerance_and_the_default_is_that_for_a_hundredth(study):
+    """The coarsest that does, by the errors in discretisation.csv."""
+    found = {e.rung.mesh: e.mesh_error for e in choose(study, "fig05").estimates[3:6]}
+    assert list(found) == ["coarser", "default", "finer"]
+    assert found["finer"] < found["default"] <= planner.TOLERANCE / 4 < found["coarser"] < 0.01
+    for mesh, error in found.items():
+        wanted = {"tolerance": 4.001 * error, "quantities": ("stress",)}
+        assert choose(study, "fig05", **wanted).chosen.mesh_error <= error, mesh
+    default = choose(study, "fig05", quantities=("stress",), tolerance=planner.TOLERANCE)
+    assert default.chosen.rung.mesh == "default"
 
 
 def test_errors_fall_along_the_ladder(study):
