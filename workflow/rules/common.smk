@@ -18,9 +18,10 @@ from workflow.figure import drawn
 from workflow.plan import plan
 from workflow.study_error import StudyError
 
-# Programs run with the Python of Snakemake itself, whether or not its environment is activated.
+# Programs run with the Python of Snakemake itself, whether or not its environment is activated, and
+# on one core each: there are as many at a time as there are cores.
 PROGRAMS = shlex.quote(str(Path(sys.executable).parent))
-shell.prefix(f"set -euo pipefail; export PATH={PROGRAMS}:$PATH; ")
+shell.prefix(f"set -euo pipefail; export PATH={PROGRAMS}:$PATH OPENBLAS_NUM_THREADS=1; ")
 
 STUDY = config.get("study", "config/config.yaml")
 
