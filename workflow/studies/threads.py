@@ -39,7 +39,7 @@ COLUMNS = {  # of the record -> of the table
     "force": "force [N]",
     "inner_diameter_inflated": "inner diameter [mm]",
     "bulge": "bulge [mm]",
-    "twist": "twist [rad/mm]",
+    "twist": "twist rate [rad/mm]",
     "thread_stretch_min": "smallest thread stretch [1]",
     "thread_stretch_max": "largest thread stretch [1]",
     "min_det_f": "smallest det F [1]",

@@ -10,6 +10,7 @@ from geometry import cell
 from geometry.cell import Box, CellMesh
 from solver.record import Solution, unreached
 from solver.status import CaseStatus, StateStatus
+from workflow import study_groups
 from workflow.config import load
 from workflow.principal import principal_of_six
 from workflow.studies import Solved, threads, threads_local
@@ -130,3 +131,8 @@ def test_principal_stresses_of_six_components():
     tensor = turn @ np.diag([-1.0, 2, 5]) @ turn.T
     six = tensor[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]]
     assert principal_of_six(six[None])[0] == pytest.approx([-1, 2, 5])
+
+
+def test_columns_stay_apart_in_the_dataset(solved):
+    rows = threads.table(solved)
+    assert len(study_groups.group(rows)) == len(rows.columns)
