@@ -12,12 +12,13 @@ from scipy.optimize import root
 
 from solver.case import Case
 from solver.cylinder_mechanics import Cylinder, State
-from solver.load_path import Control, Waypoint
+from solver.load_path import Control, Due, Waypoint
 from solver.record import Solution, unreached
 from solver.status import CaseStatus, case_status, state_status
 
 Array = NDArray[np.float64]
-SMALLEST_STEP = 1 / 1024
+SMALLEST_STEP = 1 / 1024  # share of the way to a waypoint
+LONGEST_STEP = 0.25  # of any unknown; they have no unit
 
 
 def solve(case: Case) -> Solution:
@@ -66,7 +67,12 @@ def _scale(cylinder: Cylinder, kind: Control) -> float:
 def _follow(cylinder: Cylinder, way: list[Waypoint], states: dict[str, Array]) -> str:
     """Record the stops of a way; where it could not be followed to its end, say where it ended."""
     at = cylinder.start
+    aside_done = False
     for point in way:
+        if point.due is not Due.ALWAYS:
+            if aside_done or not _is_due(cylinder, point, at):
+                continue
+            aside_done = True
         kinds = point.first, point.second
         targets = np.array([point.first_target, point.second_target])
         scales = np.array([_scale(cylinder, kind) for kind in kinds])
@@ -83,10 +89,22 @@ def _follow(cylinder: Cylinder, way: list[Waypoint], states: dict[str, Array]) -
     return ""
 
 
+def _is_due(cylinder: Cylinder, point: Waypoint, at: Array) -> bool:
+    """Whether a state of zero force is to be looked for from here."""
+    if point.due is Due.AT_LAST:
+        return True
+    pulls = cylinder.state(at).force > 0
+    swept = next(c for c in (Control.CONTRACTION, Control.PRESSURE) if c is not point.first)
+    return pulls == (point.due is Due.PULLS) and _force_slope(cylinder, at, swept) > 0
+
+
 def _walk(
     cylinder: Cylinder, kinds: tuple[Control, Control], goal: Array, at: Array
 ) -> Array | None:
-    """From some unknowns to those whose controls are at ``goal``, in as many steps as needed."""
+    """From some unknowns to those whose controls are at ``goal``, in as many steps as needed.
+
+    No step is long: a far root may be of another branch, as when a balloon snaps.
+    """
     torque = cylinder.modulus * cylinder.inner**3
 
     def values(x: Array) -> Array:
@@ -102,8 +120,8 @@ def _walk(
         target = start + share * (end - start)
         with np.errstate(all="ignore"):
             found = root(lambda x, t=target: values(x) - t, at, tol=1e-13)
-        positive = found.x[1] > 0 and (cylinder.rigid or found.x[0] > 0)
-        if np.max(np.abs(found.fun)) < 1e-11 and positive:
+        near = np.max(np.abs(found.x - at)) < LONGEST_STEP
+        if np.max(np.abs(found.fun)) < 1e-11 and near:
             at, done, step = found.x, share, 2 * step
         else:
             step /= 2
@@ -132,7 +150,7 @@ def _record(cylinder: Cylinder, states: dict[str, Array], stop: int, at: Array) 
         "min_det_f": 1.0,  # incompressible by construction
         "min_det_f_nodes": 1.0,
         "margin": min(state.lz, state.r / cylinder.inner),
-        "stiffness": _stiffness(cylinder, at),
+        "stiffness": _force_slope(cylinder, at, Control.CONTRACTION),
     }
     if muscle.braid is not None:
         stretch = cylinder.thread_stretch(state)
@@ -141,17 +159,18 @@ def _record(cylinder: Cylinder, states: dict[str, Array], stop: int, at: Array) 
         states[name][stop] = value
 
 
-def _stiffness(cylinder: Cylinder, at: Array) -> float:
-    """dF/dlz at fixed pressure and torque, by central differences of the explicit loads [N]."""
+def _force_slope(cylinder: Cylinder, at: Array, along: Control) -> float:
+    """dF/dlz at fixed pressure, or dF/dp at fixed lz; without torque; by central differences."""
     step = 1e-6
 
     def loads(x: Array) -> Array:
         state = cylinder.state(x)
-        return np.array([state.force, state.pressure] + [state.torque] * cylinder.free)
+        return np.array([state.force, state.lz, state.pressure] + [state.torque] * cylinder.free)
 
     columns = [
         (loads(at + shift) - loads(at - shift)) / (2 * step) for shift in step * np.eye(len(at))
     ]
-    by_lz = columns.pop(1)
-    others = np.array(columns).T
-    return float(by_lz[0] - others[0] @ np.linalg.solve(others[1:], by_lz[1:]))
+    force, *controls = np.array(columns).T
+    moved = np.zeros(len(at))
+    moved[0 if along is Control.CONTRACTION else 1] = 1
+    return float(force @ np.linalg.solve(np.array(controls), moved))

@@ -5,7 +5,8 @@ its stops; between them nothing is skipped, because hyperelastic states do not d
 Newton's method does.
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from enum import IntEnum, StrEnum
 
 from geometry.refusal import is_number
@@ -44,6 +45,19 @@ SWEPT = {
 CONTRACTION_LIMITS = (-0.5, 0.6)
 
 
+class Due(IntEnum):
+    """When a waypoint is gone to; the numbers are those of solver/edp/output.idp.
+
+    All but the first mean once, and only where the force grows with pressure and falls with
+    contraction.
+    """
+
+    ALWAYS = 0
+    PULLS_NO_MORE = 1  # where the force is not positive
+    PULLS = 2  # where the force is positive
+    AT_LAST = 3  # whatever the force is, if it was not passed before
+
+
 @dataclass(frozen=True)
 class Waypoint:
     """A state on the way: two controls and their targets. ``stop`` is its place in the record."""
@@ -53,6 +67,7 @@ class Waypoint:
     second: Control
     second_target: float
     stop: int | None = None
+    due: Due = Due.ALWAYS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,12 +126,21 @@ class LoadPath:
             return [self._isometric_falling(), self._isometric_rising()]
         return [self._isotonic()]
 
-    def _zero_force(self) -> list[Waypoint]:
-        """Along the path to the state without force, if that is asked for."""
-        held = HELD[self.kind]
+    def _with_zero_force(self, way: Sequence[Waypoint], due: Due) -> list[Waypoint]:
+        """A way that turns aside to the state without force, if that is asked for.
+
+        It does so from the first stop behind the change of sign: the force of a soft muscle has
+        folds and more than one zero, and from farther away another one may be found.
+        """
         if not self.zero_force:
-            return []
-        return [Waypoint(held, self.held, Control.FORCE, 0.0, stop=len(self.stops))]
+            return list(way)
+        held = HELD[self.kind]
+        zero = Waypoint(held, self.held, Control.FORCE, 0.0, stop=len(self.stops), due=due)
+        found: list[Waypoint] = []
+        for point in way:
+            found += [point] if point.stop is None else [point, zero]
+        found[-1] = replace(zero, due=Due.AT_LAST)
+        return found
 
     def _isobaric(self) -> list[Waypoint]:
         """Pressure first, then shorter from the initial length; longer before, and back."""
@@ -128,37 +152,25 @@ class LoadPath:
             way.append(
                 Waypoint(Control.PRESSURE, self.held, Control.CONTRACTION, contraction, stop)
             )
-        return way + self._zero_force()
+        return self._with_zero_force(way, Due.PULLS_NO_MORE)
 
     def _isometric_falling(self) -> list[Waypoint]:
-        """Pressure first, then contraction, then the pressure down.
-
-        The state of zero force is approached from the highest pressure, because the force of a
-        muscle falls before it rises with pressure.
-        """
+        """Pressure first, then contraction, then the pressure down."""
         top = self.stops[-1]
         down = [
             Waypoint(Control.CONTRACTION, self.held, Control.PRESSURE, p, stop)
             for stop, p in reversed(list(enumerate(self.stops)))
         ]
-        return [
-            *_pressurise(top),
-            *self._contract(top),
-            down[0],
-            *self._zero_force(),
-            *down[1:],
-        ]
+        way = [*_pressurise(top), *self._contract(top), *down]
+        return self._with_zero_force(way, Due.PULLS_NO_MORE)
 
     def _isometric_rising(self) -> list[Waypoint]:
         """Contraction first, then the pressure up."""
-        return [
-            *self._contract(0.0),
-            *(
-                Waypoint(Control.CONTRACTION, self.held, Control.PRESSURE, p, stop)
-                for stop, p in enumerate(self.stops)
-            ),
-            *self._zero_force(),
+        up = [
+            Waypoint(Control.CONTRACTION, self.held, Control.PRESSURE, p, stop)
+            for stop, p in enumerate(self.stops)
         ]
+        return self._with_zero_force([*self._contract(0.0), *up], Due.PULLS)
 
     def _contract(self, pressure: float) -> list[Waypoint]:
         """From the initial length to the held contraction, at a pressure."""

@@ -149,7 +149,7 @@ def waypoint_text(case: Case, way: list[Waypoint]) -> str:
         wanted = 0 if point.stop is None else 2 if point.stop in wanted_fields else 1
         lines.append(
             f"{point.first:d} {float(point.first_target)!r} "
-            f"{point.second:d} {float(point.second_target)!r} {wanted}"
+            f"{point.second:d} {float(point.second_target)!r} {wanted} {point.due:d}"
         )
     return "\n".join(lines) + "\n"
 

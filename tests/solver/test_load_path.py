@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from solver.load_path import RAMP_STEPS, Control, LoadPath, PathKind
+from solver.load_path import RAMP_STEPS, Control, Due, LoadPath, PathKind
 from solver.refusal import UnsolvableCase
 
 EPS, P, F = Control.CONTRACTION, Control.PRESSURE, Control.FORCE
@@ -71,11 +71,14 @@ def test_isometric_way_falls_from_the_highest_pressure():
     ]
 
 
-def test_isometric_way_looks_for_the_threshold_from_above():
-    curve = path("isometric", 0.1, 0.1, 0.4, zero_force=True)
-    falling = curve.ways()[0]
-    assert [stop for _, stop in recorded(falling)] == [1, 2, 0]
+def test_isometric_way_turns_aside_to_the_threshold_behind_every_stop():
+    falling, rising = path("isometric", 0.1, 0.1, 0.4, zero_force=True).ways()
+    assert [stop for _, stop in recorded(falling)] == [1, 2, 0, 2]
+    assert [stop for _, stop in recorded(rising)] == [0, 2, 1, 2]
     assert recorded(falling)[1] == ({EPS: 0.1, F: 0}, 2)
+    for way, due in ((falling, Due.PULLS_NO_MORE), (rising, Due.PULLS)):
+        assert [w.due for w in way if w.stop == 2] == [due, Due.AT_LAST]
+        assert {w.due for w in way if w.stop != 2} == {Due.ALWAYS}
 
 
 def test_isometric_second_way_rises():

@@ -223,8 +223,8 @@ def test_waypoints_keep_every_digit(make_case):
     number, *lines = waypoint_text(case, path.ways()[0]).splitlines()
     assert int(number) == len(lines)
     *_, last, final = (line.split() for line in lines)
-    assert [float(v) for v in last] == [1, 0.1, 0, 0.05, 1]
-    assert [float(v) for v in final] == [1, 0.1, 0, third, 2]
+    assert [float(v) for v in last] == [1, 0.1, 0, 0.05, 1, 0]
+    assert [float(v) for v in final] == [1, 0.1, 0, third, 2, 0]
 
 
 def test_failure_has_every_variable(make_case):

@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
+from geometry.muscle import Braid, Muscle
 from geometry.section import SectionMesh
 from solver.effects import Effects
 from solver.load_path import LoadPath
-from solver.material import MooneyRivlin
+from solver.material import MooneyRivlin, Thread
 from solver.numerics import Numerics
 from solver.status import CaseStatus, StateStatus
 
@@ -88,3 +89,24 @@ def test_asymptote_at_a_held_length(sliding_tube):
     for p, diameter in zip((0.05, 0.15), solution.states["inner_diameter_inflated"], strict=False):
         assert pressure_and_force(diameter / 2, 1.0)[0] == pytest.approx(p, rel=1e-4)
     assert solution.state_status[2] is StateStatus.NOT_REACHED
+
+
+@pytest.mark.parametrize("model", ["cylinder", "solid"])
+def test_the_threshold_of_a_soft_muscle_is_the_lowest_zero_of_its_force(
+    make_case, solve_case, model
+):
+    """Soft and wide, it pulls most at 0.3 to 0.5 MPa and pushes again at high pressure."""
+    braid = Braid.from_angle(angle=21, threads=60, layer_diameters=(21.2, 23.6))
+    muscle = Muscle(inner_diameter=20, wall_thickness=4, length=100, braid=braid, cap_length=16)
+    rubber, thread = MooneyRivlin(c10=0.028, c01=0.01), Thread(stiffness=80)
+
+    def threshold(*stops: float) -> float:
+        path = LoadPath(kind="isometric", held=0.17, stops=stops, zero_force=True)
+        case = make_case(muscle=muscle, rubber=rubber, thread=thread, model=model, path=path)
+        solution = solve_case(case)
+        assert solution.status == "converged", solution.reason
+        return solution.states["pressure"][-1]
+
+    near = threshold(0.03, 0.06)
+    assert 0.03 < near < 0.06
+    assert threshold(0.1, 0.3, 0.5, 0.7) == pytest.approx(near, rel=1e-6)
