@@ -47,9 +47,9 @@ TEXT = {  # beside a model: what it is for, and where [points]
         "right",
     ),
     "solid": ("solid: stress, local effects,\nand the last half per cent", (14, 0), "left"),
-    "cell": ("cell: single threads, no caps", (9, 0), "left"),
+    "cell": ("cell: single threads,\nno end caps", (0, -19), "center"),
 }
-BARS = (("membrane", "1/1"), ("solid", "1/1"), ("solid", "1/2"), ("solid", "1/4"))
+BARS = (("membrane", DEFAULT), *(("solid", f"1/{m}") for m in (1, 2, 4)), ("cell", DEFAULT))
 FAMILIES = (  # set, model, colour, marker, what it is
     ("tube", "solid", "#009e73", "o", "bare tube, smooth"),
     ("mesh", "membrane", "black", "^", "membrane"),
@@ -155,13 +155,14 @@ def _label_seconds(ax: Any, rows: pd.DataFrame) -> None:
 def _maps(ax: Any, rows: pd.DataFrame) -> None:
     """How far the fullest model itself is from what was measured, whatever the mesh."""
     fullest = rows[rows["model"] == "solid"].sort_values("refinement").iloc[-1]
-    for name, place in (("festo_musclesim", "top"), ("martens2017", "bottom")):
-        value = abs(fullest[f"{name}_share [1]"])
+    found = {name: abs(fullest[f"{name}_share [1]"]) for name in ("martens2017", "festo_musclesim")}
+    above = max(found.values())
+    for row, (name, value) in enumerate(found.items()):
         look = SOURCES[name]
         ax.axhline(value, BESIDE, color=look["color"], linewidth=0.9, linestyle=":")
         text = f"solid from {look['label'].removesuffix(' 2017')}: {100 * value:.1f} %"
-        left = {"transform": ax.get_yaxis_transform(), "fontsize": 7, "color": look["color"]}
-        ax.text(BESIDE, value * (1.04 if place == "bottom" else 0.9), text, va=place, **left)
+        left = {"transform": ax.get_yaxis_transform(), "fontsize": 7, "va": "bottom"}
+        ax.text(BESIDE, above * 1.04 * 1.4**row, text, color=look["color"], **left)
 
 
 def _split(ax: Any, rows: pd.DataFrame) -> None:
