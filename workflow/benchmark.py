@@ -31,7 +31,7 @@ from workflow.studies import StudyCase, accuracy_costs
 from workflow.study_error import StudyError
 
 SETS = ("mesh", "steps", "tolerance")
-# CPU seconds of a curve of 21 states on the machine on which this was written: of mesh 1/1 (the mean
+# CPU seconds of a curve of 21 states on the machine on which this was written: mesh 1/1 (the mean
 # of the cell's meshes), and the power of the refinement with which they grow. Only for saying
 # beforehand what a run will take.
 EXPECTED = {"membrane": (0.15, 0.4), "solid": (0.45, 2.2), "cell": (23.0, 3.0)}
