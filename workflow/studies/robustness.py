@@ -39,7 +39,7 @@ LOW_PRESSURE_MESHES = {  # the slack tube folds in waves of 20 mm
     number: SectionMesh(body_step=step)
     for number, step in zip(MESHES, (0.14, 0.1, 0.07), strict=True)
 }
-# Slack tubes that are pushed far buckle in waves; steps of 0.5 diameters see folds that are not there.
+# Slack tubes pushed far buckle in waves; steps of half a diameter see folds that are not there.
 HYPERCUBE_MESH = SectionMesh(cap_step=0.25, growth=1.25, body_step=0.2)
 
 SEED = 20260101
