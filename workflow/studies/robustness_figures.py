@@ -30,7 +30,7 @@ def overview(table: pd.DataFrame) -> Figure:
     named = table[(table["set"] == "named") & (table["model"] == "solid")]
     cube = table[(table["set"] == "hypercube") & (table["model"] == "solid") & (table["mesh"] == 1)]
     figure, places = style.grid(style.FULL, 7.4, 1, 2, gap=(0.75, 0.5), width_ratios=[1.2, 1])
-    figure.subplots_adjust(left=0.19, bottom=0.08)
+    figure.subplots_adjust(left=0.25, bottom=0.08)
     left = places[0, 0].subgridspec(1, 2, wspace=0.12)
     first = figure.add_subplot(left[0, 0])
     second = figure.add_subplot(left[0, 1], sharey=first)
@@ -60,7 +60,7 @@ def _named_det(ax: Any, named: pd.DataFrame) -> None:
     ax.set(yticks=range(len(names)), yticklabels=names, xlim=(0, 1.02), xlabel="smallest det F")
     ax.invert_yaxis()
     ax.set_title("named cases, −5 to 25 %")
-    ax.legend(loc="upper left", fontsize=7, handlelength=1, borderaxespad=0.1)
+    ax.legend(loc="center left", fontsize=7, handlelength=1, borderaxespad=0.1)
     bad = named[named["status"] != "converged"]
     for name, rows in bad.groupby("name"):
         ax.text(0.02, names.index(name), rows["status"].iloc[0], fontsize=7, va="center")
@@ -126,6 +126,14 @@ def worst(solved: Sequence[Solved], table: pd.DataFrame) -> Figure:
     figure, axes = style.panels(style.FULL, 6.6, 3, 2, gap=(0.45, 0.75))
     for ax, (_, row) in zip(axes.flat, rows.iterrows(), strict=False):
         _wall(ax, by_record[row["record"]], row)
+    figure.text(
+        0.01,
+        0.005,
+        "Last state near the cap. Colour: largest principal stress, red tension, blue compression, "
+        "each to its own largest.",
+        fontsize=7,
+        color=style.SOFT,
+    )
     return figure
 
 
