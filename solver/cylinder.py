@@ -12,6 +12,7 @@ from scipy.optimize import root
 
 from solver.case import Case
 from solver.cylinder_mechanics import Cylinder, State
+from solver.effects import Rubber
 from solver.load_path import Control, Due, Waypoint
 from solver.record import Solution, unreached
 from solver.status import CaseStatus, case_status, state_status
@@ -26,7 +27,7 @@ def solve(case: Case) -> Solution:
     cylinder = Cylinder(case)
     states = unreached(case.path.states)
     reason = ""
-    for way in case.path.ways():
+    for way in case.path.ways(rubber=case.effects.rubber is not Rubber.NONE):
         reason = _follow(cylinder, way, states)
         if not reason:
             break

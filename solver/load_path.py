@@ -113,18 +113,19 @@ class LoadPath:
         """Number of recorded states."""
         return len(self.stops) + self.zero_force
 
-    def ways(self) -> list[list[Waypoint]]:
+    def ways(self, *, rubber: bool = True) -> list[list[Waypoint]]:
         """Ways from the unloaded muscle through every stop; a second for what the first missed.
 
-        Only an isometric path has a second way. A slack tube would crumple, so it is pressurised
-        first and the pressure then lowered; but where the highest pressure cannot be reached, what
-        lies below it can from the side of the slack tube.
+        On an isometric path a slack tube would crumple, so it is pressurised first and the pressure
+        then lowered; but where the highest pressure cannot be reached, what lies below it can from
+        the side of the slack tube. Under a load the pressure rises from zero; but a net without
+        ``rubber`` closes there: it is pressurised and loaded first and the pressure then lowered.
         """
         if self.kind is PathKind.ISOBARIC:
             return [self._isobaric()]
         if self.kind is PathKind.ISOMETRIC:
             return [self._isometric_falling(), self._isometric_rising()]
-        return [self._isotonic()]
+        return [self._isotonic_rising() if rubber else self._isotonic_falling()]
 
     def _with_zero_force(self, way: Sequence[Waypoint], due: Due) -> list[Waypoint]:
         """A way that turns aside to the state without force, if that is asked for.
@@ -180,17 +181,26 @@ class LoadPath:
             if self.held != 0
         ]
 
-    def _isotonic(self) -> list[Waypoint]:
+    def _isotonic_rising(self) -> list[Waypoint]:
         """The load first, on the muscle without pressure, then the pressure up."""
-        way = [
-            Waypoint(Control.PRESSURE, 0.0, Control.FORCE, self.held * k / RAMP_STEPS)
+        return [*self._load(0.0), *self._pressures_under_load()]
+
+    def _isotonic_falling(self) -> list[Waypoint]:
+        """The highest pressure first, then the load, then the pressure down."""
+        top = self.stops[-1]
+        return [*_pressurise(top), *self._load(top), *self._pressures_under_load()[::-1]]
+
+    def _load(self, pressure: float) -> list[Waypoint]:
+        return [
+            Waypoint(Control.PRESSURE, pressure, Control.FORCE, self.held * k / RAMP_STEPS)
             for k in range(1, RAMP_STEPS + 1)
         ]
-        way += [
+
+    def _pressures_under_load(self) -> list[Waypoint]:
+        return [
             Waypoint(Control.FORCE, self.held, Control.PRESSURE, p, stop)
             for stop, p in enumerate(self.stops)
         ]
-        return way
 
 
 def _pressurise(pressure: float) -> list[Waypoint]:

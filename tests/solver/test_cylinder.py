@@ -142,3 +142,14 @@ def test_the_unloaded_tube_is_at_rest(solve, bare_tube):
     states = solve("isobaric", 0.0, 0.0, muscle=bare_tube)
     assert states["force"][0] == pytest.approx(0, abs=1e-10)
     assert states["inner_diameter_inflated"][0] == pytest.approx(20, abs=1e-10)
+
+
+def test_a_net_without_rubber_under_a_load(solve, muscle):
+    """Of one radius and hardly stretching: F = p pi R^2 (3 lz^2 cos^2 - 1) / sin^2."""
+    pressures = np.array([0.2, 0.4])
+    net = {"effects": Effects(rubber="none", wall="one_radius"), "thread": Thread(stiffness=1e5)}
+    lz = 1 - solve("isotonic", 200.0, *pressures, **net)["contraction"]
+    radius = muscle.braid.mean_diameter / 2
+    angle = math.atan(2 * math.pi * radius / muscle.braid.lead)
+    share = (3 * (lz * math.cos(angle)) ** 2 - 1) / math.sin(angle) ** 2
+    np.testing.assert_allclose(pressures * math.pi * radius**2 * share, 200, rtol=1e-3)

@@ -99,6 +99,19 @@ def test_isotonic_way():
     assert recorded(way) == [({F: 200, P: 0}, 0), ({F: 200, P: 0.3}, 1)]
 
 
+def test_isotonic_way_without_rubber_falls_from_the_highest_pressure():
+    """A net without rubber closes where there is no pressure."""
+    (way,) = path("isotonic", 200.0, 0.1, 0.3).ways(rubber=False)
+    loads = way[RAMP_STEPS : 2 * RAMP_STEPS]
+    assert [(w.first_target, w.second_target) for w in loads] == [
+        (0.3, 50),
+        (0.3, 100),
+        (0.3, 150),
+        (0.3, 200),
+    ]
+    assert recorded(way) == [({F: 200, P: 0.3}, 1), ({F: 200, P: 0.1}, 0)]
+
+
 @pytest.mark.parametrize("kind", PathKind)
 def test_every_stop_is_on_every_way(kind):
     curve = path(kind, 0.1, 0.1, 0.2, 0.3)
