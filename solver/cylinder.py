@@ -68,35 +68,41 @@ def _scale(cylinder: Cylinder, kind: Control) -> float:
 def _follow(cylinder: Cylinder, way: list[Waypoint], states: dict[str, Array]) -> str:
     """Record the stops of a way; where it could not be followed to its end, say where it ended."""
     at = cylinder.start
-    aside_done = False
+    aside_done, before, reason = False, set[bool](), ""
     for point in way:
-        if point.due is not Due.ALWAYS:
-            if aside_done or not _is_due(cylinder, point, at):
-                continue
-            aside_done = True
+        aside = point.due is not Due.ALWAYS
+        pulls = cylinder.state(at).force > 0
+        if reason and point.due is not Due.AT_LAST:
+            continue
+        if aside and (aside_done or not _is_due(cylinder, point, at, pulls, before)):
+            continue
         kinds = point.first, point.second
         targets = np.array([point.first_target, point.second_target])
         scales = np.array([_scale(cylinder, kind) for kind in kinds])
         found = _walk(cylinder, kinds, targets / scales, at)
+        aside_done |= aside
         if found is None:
             last = cylinder.state(at)
-            return (
+            reason = reason or (
                 f"no state found beyond contraction {1 - last.lz:g}, pressure {last.pressure:g} "
                 f"MPa, force {last.force:g} N"
             )
+            continue
         at = found
         if point.stop is not None:
             _record(cylinder, states, point.stop, at)
-    return ""
+            before.add(bool(cylinder.state(at).force > 0))
+    return reason
 
 
-def _is_due(cylinder: Cylinder, point: Waypoint, at: Array) -> bool:
-    """Whether a state of zero force is to be looked for from here."""
+def _is_due(cylinder: Cylinder, point: Waypoint, at: Array, pulls: bool, before: set[bool]) -> bool:
+    """Whether to look for the state of zero force from here; ``before`` says where it pulled."""
     if point.due is Due.AT_LAST:
-        return True
-    pulls = cylinder.state(at).force > 0
+        return pulls or True in before
     swept = next(c for c in (Control.CONTRACTION, Control.PRESSURE) if c is not point.first)
-    return pulls == (point.due is Due.PULLS) and _force_slope(cylinder, at, swept) > 0
+    return pulls == (point.due is Due.PULLS) and (
+        (not pulls) in before or _force_slope(cylinder, at, swept) > 0
+    )
 
 
 def _walk(

@@ -48,14 +48,14 @@ CONTRACTION_LIMITS = (-0.5, 0.6)
 class Due(IntEnum):
     """When a waypoint is gone to; the numbers are those of solver/edp/output.idp.
 
-    All but the first mean once, and only where the force grows with pressure and falls with
-    contraction.
+    All but the first mean once. For the two in the middle the force has to have had the other sign
+    at a stop before, or to grow with pressure and fall with contraction.
     """
 
     ALWAYS = 0
     PULLS_NO_MORE = 1  # where the force is not positive
     PULLS = 2  # where the force is positive
-    AT_LAST = 3  # whatever the force is, if it was not passed before
+    AT_LAST = 3  # where it is or was positive; also after a way that has ended early
 
 
 @dataclass(frozen=True)
@@ -140,8 +140,7 @@ class LoadPath:
         found: list[Waypoint] = []
         for point in way:
             found += [point] if point.stop is None else [point, zero]
-        found[-1] = replace(zero, due=Due.AT_LAST)
-        return found
+        return [*found, replace(zero, due=Due.AT_LAST)]
 
     def _isobaric(self) -> list[Waypoint]:
         """Pressure first, then shorter from the initial length; longer before, and back."""

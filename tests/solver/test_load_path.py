@@ -73,11 +73,11 @@ def test_isometric_way_falls_from_the_highest_pressure():
 
 def test_isometric_way_turns_aside_to_the_threshold_behind_every_stop():
     falling, rising = path("isometric", 0.1, 0.1, 0.4, zero_force=True).ways()
-    assert [stop for _, stop in recorded(falling)] == [1, 2, 0, 2]
-    assert [stop for _, stop in recorded(rising)] == [0, 2, 1, 2]
+    assert [stop for _, stop in recorded(falling)] == [1, 2, 0, 2, 2]
+    assert [stop for _, stop in recorded(rising)] == [0, 2, 1, 2, 2]
     assert recorded(falling)[1] == ({EPS: 0.1, F: 0}, 2)
     for way, due in ((falling, Due.PULLS_NO_MORE), (rising, Due.PULLS)):
-        assert [w.due for w in way if w.stop == 2] == [due, Due.AT_LAST]
+        assert [w.due for w in way if w.stop == 2] == [due, due, Due.AT_LAST]
         assert {w.due for w in way if w.stop != 2} == {Due.ALWAYS}
 
 

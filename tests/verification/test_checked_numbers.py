@@ -10,6 +10,7 @@ import pytest
 from geometry.section import SectionMesh
 from solver.effects import Effects
 from solver.load_path import LoadPath
+from solver.material import Thread
 from solver.numerics import Numerics
 
 FINE = Numerics(section=SectionMesh(refinement=2))
@@ -103,3 +104,14 @@ def test_threshold_pressure(make_case, solve_case, model, pressure):
     states = solve_case(make_case(model=model, path=path)).states
     assert states["pressure"][2] == pytest.approx(pressure, abs=1e-4)
     assert states["force"][2] == pytest.approx(0, abs=1e-6)
+
+
+@pytest.mark.parametrize(("model", "pressure"), [("membrane", 0.1346), ("solid", 0.1365)])
+@pytest.mark.parametrize("stiffness", [315, 20e3])
+def test_threshold_pressure_with_stops_below_it(make_case, solve_case, model, pressure, stiffness):
+    """Below it the force falls with pressure, and the membrane crumples."""
+    path = LoadPath(kind="isometric", held=0.1, stops=(0.05, 0.1, 0.15, 0.3), zero_force=True)
+    case = make_case(model=model, path=path, thread=Thread(stiffness=stiffness))
+    states = solve_case(case).states
+    assert states["pressure"][-1] == pytest.approx(pressure, abs=3e-3)
+    assert states["force"][-1] == pytest.approx(0, abs=1e-6)
