@@ -98,7 +98,7 @@ def _follow(cylinder: Cylinder, way: list[Waypoint], states: dict[str, Array]) -
 def _is_due(cylinder: Cylinder, point: Waypoint, at: Array, pulls: bool, before: set[bool]) -> bool:
     """Whether to look for the state of zero force from here; ``before`` says where it pulled."""
     if point.due is Due.AT_LAST:
-        return pulls or True in before
+        return True in before
     swept = next(c for c in (Control.CONTRACTION, Control.PRESSURE) if c is not point.first)
     return pulls == (point.due is Due.PULLS) and (
         (not pulls) in before or _force_slope(cylinder, at, swept) > 0

@@ -55,7 +55,7 @@ class Due(IntEnum):
     ALWAYS = 0
     PULLS_NO_MORE = 1  # where the force is not positive
     PULLS = 2  # where the force is positive
-    AT_LAST = 3  # where it is or was positive; also after a way that has ended early
+    AT_LAST = 3  # where it was positive at a stop before; also after a way that has ended early
 
 
 @dataclass(frozen=True)
