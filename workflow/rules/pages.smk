@@ -31,7 +31,8 @@ def page_sources():
     for study, pictures in studies.FIGURES.items():
         if pictures and has_claims():
             drawn_by = expand("results/figures/{picture}.png", picture=pictures)
-            pages[study] = CHAPTERS.get(study, EFFECTS), study.capitalize(), drawn_by, []
+            notes = [f"results/tables/{study}_notes.csv"] if study in studies.NOTED else []
+            pages[study] = CHAPTERS.get(study, EFFECTS), study.capitalize(), drawn_by, notes
     return pages
 
 

@@ -2,6 +2,7 @@
 #
 #   in   the records of the study's cases; workflow/studies/<name>.py
 #   out  results/tables/<name>.csv    all that its figures draw
+#        results/tables/<name>_notes.csv, for some: what a reader must know of it
 #        results/figures/<...>.png, .svg
 #        a group of results/dataset.nc, for some (workflow/study_groups.py)
 
@@ -23,6 +24,7 @@ for study_name, study_figures in studies.FIGURES.items():
             dataset=ancient("results/dataset.nc") if study_name in studies.IN_DATASET else [],
         output:
             table=f"results/tables/{study_name}.csv",
+            notes=[f"results/tables/{study_name}_notes.csv"] if study_name in studies.NOTED else [],
             figures=expand(
                 "results/figures/{figure}.{kind}", figure=study_figures, kind=["png", "svg"]
             ),

@@ -5,6 +5,7 @@ A study is a module here with
 - ``cases(study) -> list[StudyCase]``  what to solve, from the muscles of the study file
 - ``table(solved) -> DataFrame``       all that its figures draw, and more
 - ``draw(solved, table)``             figures by name, those of FIGURES
+- ``notes(table) -> DataFrame``       of those in NOTED: the rows that a reader must know
 
 and runs as ``snakemake --cores 2 <name>``.
 """
@@ -32,6 +33,7 @@ FIGURES = {
     "threads": ("threads", "threads_correction"),
     "sensitivity": ("sensitivity",),
 }
+NOTED = ("robustness",)  # write <name>_notes.csv beside their table
 IN_DATASET = ("robustness", "threads")  # tables that are groups of the dataset as well
 
 
@@ -88,6 +90,9 @@ def evaluate(name: str, study_file: str, table: Path, figures: Path) -> None:
     rows = module(name).table(solved)
     with aside(table) as beside:
         rows.to_csv(beside, index=False)
+    if name in NOTED:
+        with aside(table.with_name(f"{name}_notes.csv")) as beside:
+            module(name).notes(rows).to_csv(beside, index=False, float_format="%.4g")
     for figure, drawing in module(name).draw(solved, rows).items():
         for suffix in (".svg", ".png"):
             style.save(drawing, (figures / figure).with_suffix(suffix))

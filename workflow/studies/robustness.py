@@ -25,7 +25,7 @@ from solver.material import MooneyRivlin, Thread
 from solver.numerics import Numerics
 from workflow.config import Study
 from workflow.studies import Solved, StudyCase
-from workflow.studies.robustness_table import table
+from workflow.studies.robustness_table import notes, table
 
 MUSCLE, SILICONE = "dmsp20", "dmsp20_silicone"  # of the study file
 CONTRACTIONS = tuple(round(-0.05 + 0.01 * k, 2) for k in range(31))
@@ -58,7 +58,7 @@ LIMITS = {  # of the hypercube: name -> (low, high, logarithmic)
     "pressure": (0.01, 0.8, False),  # MPa
     "path": (0, 5, False),  # 0 to 3 isobaric, to 4 isometric, to 5 isotonic
 }
-__all__ = ["cases", "draw", "table"]
+__all__ = ["cases", "draw", "notes", "table"]
 
 LAYERS = (0.15, 0.45)  # depth of the layers, shares of the wall
 

@@ -12,6 +12,21 @@ from workflow.studies import Solved
 
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 APART = 0.03  # share of the largest force from which a membrane is far from its solid
+MESH_APART = {"named": 1e-3, "hypercube": 5e-3}  # the same of a mesh from a finer one
+NOTED = [
+    "set",
+    "name",
+    "model",
+    "mesh",
+    "path",
+    "status",
+    "reason",
+    "invalid states",
+    "difference",
+    "difference at",
+    "against",
+    "cause",
+]
 
 
 def table(solved: Sequence[Solved]) -> pd.DataFrame:
@@ -28,6 +43,17 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
         row = _row(entry) | _agreement(entry, finest[_group(entry)])
         rows.append(row | {"cause": _cause(row)})
     return pd.DataFrame(rows)
+
+
+def notes(rows: pd.DataFrame) -> pd.DataFrame:
+    """What a reader must know: solids that ended early, meshes and models that are far apart."""
+    solid = rows["model"] == "solid"
+    ended = solid & (rows["status"] != CaseStatus.CONVERGED)
+    meshes = solid & (rows["difference"] > rows["set"].map(MESH_APART))
+    chosen = rows[ended | meshes | (rows["cause"] != "")]
+    return chosen.sort_values(
+        ["model", "set", "name", "mesh"], ascending=[False, False, True, True]
+    )[NOTED]
 
 
 def _cause(row: Mapping[str, Any]) -> str:

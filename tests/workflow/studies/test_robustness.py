@@ -116,6 +116,15 @@ def test_a_membrane_far_from_its_solid_says_why(asked):
         assert rows.loc["solid", "cause"] == ""
 
 
+def test_notes_are_what_ended_early_or_is_far_apart(table):
+    noted = robustness.notes(table)
+    assert set(zip(noted["model"], noted["mesh"], strict=True)) == {("solid", 1)}  # 0.5 % apart
+    table.loc[table["model"] == "membrane", "cause"] = "ends bend"
+    table.loc[table["mesh"] == 2, "status"] = "limit_point"
+    noted = robustness.notes(table)
+    assert list(noted["model"]) == ["solid", "solid", "membrane"]
+
+
 def test_states_that_are_missing_are_counted_and_not_compared(table):
     membrane = table.set_index("model").loc["membrane"]
     assert membrane["states reached"] == 25
