@@ -53,5 +53,13 @@ def tidy(folder: Path) -> None:
     """Delete files that processes which are gone were writing beside their place."""
     for path in folder.rglob(".*"):
         writer = re.search(r"\.(\d+)(\.|$)", path.name)
-        if writer and path.is_file() and not Path("/proc", writer[1]).exists():
+        if writer and path.is_file() and not _writes_here(writer[1]):
             path.unlink(missing_ok=True)
+
+
+def _writes_here(process: str) -> bool:
+    """Whether a process lives and works in this folder; its number may be another's by now."""
+    try:
+        return Path("/proc", process, "cwd").readlink() == Path.cwd()
+    except OSError:
+        return False  # gone, or somebody else's
