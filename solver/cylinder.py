@@ -71,10 +71,9 @@ def _follow(cylinder: Cylinder, way: list[Waypoint], states: dict[str, Array]) -
     aside_done, before, reason = False, set[bool](), ""
     for point in way:
         aside = point.due is not Due.ALWAYS
-        pulls = cylinder.state(at).force > 0
         if reason and point.due is not Due.AT_LAST:
             continue
-        if aside and (aside_done or not _is_due(cylinder, point, at, pulls, before)):
+        if aside and (aside_done or not _is_due(cylinder, point, at, before)):
             continue
         kinds = point.first, point.second
         targets = np.array([point.first_target, point.second_target])
@@ -95,10 +94,11 @@ def _follow(cylinder: Cylinder, way: list[Waypoint], states: dict[str, Array]) -
     return reason
 
 
-def _is_due(cylinder: Cylinder, point: Waypoint, at: Array, pulls: bool, before: set[bool]) -> bool:
+def _is_due(cylinder: Cylinder, point: Waypoint, at: Array, before: set[bool]) -> bool:
     """Whether to look for the state of zero force from here; ``before`` says where it pulled."""
     if point.due is Due.AT_LAST:
         return True in before
+    pulls = cylinder.state(at).force > 0
     swept = next(c for c in (Control.CONTRACTION, Control.PRESSURE) if c is not point.first)
     return pulls == (point.due is Due.PULLS) and (
         (not pulls) in before or _force_slope(cylinder, at, swept) > 0
@@ -127,8 +127,9 @@ def _walk(
         target = start + share * (end - start)
         with np.errstate(all="ignore"):
             found = root(lambda x, t=target: values(x) - t, at, tol=1e-13)
+        positive = found.x[1] > 0 and (cylinder.rigid or found.x[0] > 0)
         near = np.max(np.abs(found.x - at)) < LONGEST_STEP
-        if np.max(np.abs(found.fun)) < 1e-11 and near:
+        if np.max(np.abs(found.fun)) < 1e-11 and positive and near:
             at, done, step = found.x, share, 2 * step
         else:
             step /= 2

@@ -13,7 +13,7 @@ from workflow.studies import Solved
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 APART = 0.03  # share of the largest force from which a membrane is far from its solid
 MESH_APART = {"named": 1e-3, "hypercube": 5e-3}  # the same of a mesh from a finer one
-NOTED = [
+NOTE_COLUMNS = [
     "set",
     "name",
     "model",
@@ -53,7 +53,7 @@ def notes(rows: pd.DataFrame) -> pd.DataFrame:
     chosen = rows[ended | meshes | (rows["cause"] != "")]
     return chosen.sort_values(
         ["model", "set", "name", "mesh"], ascending=[False, False, True, True]
-    )[NOTED]
+    )[NOTE_COLUMNS]
 
 
 def _cause(row: Mapping[str, Any]) -> str:
