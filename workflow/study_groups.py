@@ -2,7 +2,8 @@
 
 A study is asked for apart from the scenes, so it comes to the dataset from two sides: gathering
 takes over the tables that are there, and a study that ends adds its own to a dataset that is there.
-Both give the same bytes. Every row names its record, so an old table is never a wrong one.
+Both give the same bytes. A group is as old as the last run of its study: after a change of the
+study file ask for the study again.
 """
 
 import fcntl
