@@ -1,6 +1,6 @@
 """The HDF5 record of one solved case: its layout, writing, reading.
 
-Layout, version 2
+Layout, version 3
 -----------------
 (512 bytes)  one line of text: file type, layout, and the SHA-256 of all that follows these bytes,
              in what HDF5 calls the user block; programs that read HDF5 skip it
@@ -9,7 +9,8 @@ Layout, version 2
              effects (names of those that are on), unknowns (beside contraction and pressure)
 /parameters  one scalar dataset per number of the case, in groups as in the JSON;
              attrs: units
-/states      datasets of shape (state,) as in VARIABLES, attrs: units, long_name; and status.
+/states      datasets of shape (state,) as in VARIABLES, attrs: units, long_name; and of
+             texts: status; flags, words of solver/status.py with spaces between; note, a sentence.
              States are in the order of the path's stops, then that of zero force if asked for.
              What was not reached is NaN.
 /fields/<n>  of state n, where asked for. Membrane: meridian (node, 4) = R, Z, r, z [mm].
@@ -27,6 +28,7 @@ import hashlib
 import io
 import json
 import os
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -35,9 +37,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.case import Case, digest
-from solver.status import CaseStatus, StateStatus
+from solver.status import CaseStatus, Flag, StateStatus
 
-FILETYPE, LAYOUT = "muscle-case", 2
+FILETYPE, LAYOUT = "muscle-case", 3
 BLOCK = 512  # bytes before the HDF5 data
 
 VARIABLES = {
@@ -61,6 +63,8 @@ VARIABLES = {
     "margin": ("1", "smallest of what must stay positive (solver/edp/state.idp)"),
     "energy": ("N mm", "strain energy of the muscle"),
     "stiffness": ("N/mm", "dF/dl at fixed pressure"),
+    "force_by_pressure": ("N/MPa", "dF/dp at fixed length"),
+    "smoothing": ("N", "force that the smoothing of the slack law adds"),
     "unstable_modes": ("1", "unstable modes at fixed contraction and pressure"),
     "residual": ("1", "largest residual, share of the largest nodal force"),
     "iterations": ("1", "Newton iterations since the state before"),
@@ -101,6 +105,7 @@ class Solution:
     Attributes
     ----------
     states : arrays of shape (state,), as in VARIABLES; NaN where not reached
+    flags, notes : of every state, beside its status; left out, there are none
     fields : state number -> name -> array, as in the layout
     log : end of the solver's output where it failed
     unknowns : what was solved for beside contraction and pressure; 0 if nothing was solved
@@ -110,9 +115,16 @@ class Solution:
     reason: str
     states: dict[str, NDArray[np.float64]]
     state_status: list[StateStatus]
+    flags: list[frozenset[Flag]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
     fields: dict[int, dict[str, NDArray[np.float64]]] = field(default_factory=dict)
     log: str = ""
     unknowns: int = 0
+
+    def __post_init__(self) -> None:
+        count = len(self.state_status)
+        object.__setattr__(self, "flags", self.flags or [frozenset()] * count)
+        object.__setattr__(self, "notes", self.notes or [""] * count)
 
 
 def unreached(count: int) -> dict[str, NDArray[np.float64]]:
@@ -153,7 +165,13 @@ def _write(file: Any, case: Case, solution: Solution) -> None:
     for name, (unit, long_name) in VARIABLES.items():
         data = states.create_dataset(name, data=solution.states[name])
         data.attrs.update(units=unit, long_name=long_name)
-    states.create_dataset("status", data=[s.value.encode() for s in solution.state_status])
+    words: dict[str, list[str]] = {
+        "status": [status.value for status in solution.state_status],
+        "flags": [" ".join(sorted(flags)) for flags in solution.flags],
+        "note": solution.notes,
+    }
+    for name, texts in words.items():
+        states.create_dataset(name, data=[text.encode() for text in texts])
     for number, arrays in sorted(solution.fields.items()):
         group = file.create_group(f"fields/{number}")
         for name, values in arrays.items():
@@ -195,10 +213,13 @@ def _check_seal(path: Path) -> None:
     """
     content = path.read_bytes()
     if content != sealed(content):
-        kind = sealed(b"").partition(b" sha256")[0]
-        if content.startswith(kind):
+        kind = f"{FILETYPE} layout {LAYOUT}"
+        begin = content[:BLOCK].partition(b" sha256")[0].decode(errors="replace")
+        if begin == kind:
             raise ValueError("it has changed since it was written")
-        raise ValueError(f"it does not begin with {kind.decode()!r}")
+        if re.fullmatch(f"{FILETYPE} layout [0-9]+", begin):
+            raise ValueError(f"it is a {begin}, of another version of this program, no {kind}")
+        raise ValueError(f"it does not begin with {kind!r}")
 
 
 def _read(file: Any) -> tuple[Case, Solution]:
@@ -221,7 +242,9 @@ def _read(file: Any) -> tuple[Case, Solution]:
         log=file.attrs["log"],
         unknowns=int(file.attrs["unknowns"]),
         states={name: states[name][()] for name in VARIABLES},
-        state_status=[StateStatus(s.decode()) for s in states["status"][()]],
+        state_status=[StateStatus(text.decode()) for text in states["status"][()]],
+        flags=[frozenset(map(Flag, text.decode().split())) for text in states["flags"][()]],
+        notes=[text.decode() for text in states["note"][()]],
         fields={
             int(number): {name: data[()] for name, data in group.items()}
             for number, group in file.get("fields", {}).items()

@@ -15,6 +15,14 @@ class StateStatus(StrEnum):
     UNSTABLE = "unstable"  # in equilibrium, but the muscle would leave it
     INVALID_STATE = "invalid_state"  # in equilibrium, but turned inside out somewhere
     NOT_REACHED = "not_reached"
+    NO_ROOT = "no_root"  # there is no state of zero force where it was looked for
+
+
+class Flag(StrEnum):
+    """What a user should know of a state beside its status; several may hold."""
+
+    OVERSTRAINED = "overstrained"  # beyond a limit of the material
+    SMOOTHED = "smoothed"  # the smoothing of the slack law carries a share of the force
 
 
 class CaseStatus(StrEnum):

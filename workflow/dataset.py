@@ -1,16 +1,17 @@
 """All curves in one labelled tree: ``results/dataset.nc``.
 
-Layout, version 1
+Layout, version 2
 -----------------
 /isobaric    dims muscle, model, variant, pressure, contraction
 /isometric   dims muscle, model, variant, contraction, pressure
 /isotonic    dims muscle, model, variant, load, pressure
     the variables of solver.record.VARIABLES that are no dimension, NaN where there is no state;
     force_error: what its mesh does to the force at most (workflow/discretisation.py);
-    status: of the state (solver/status.py), empty where nobody asked for one;
+    status: of the state (solver/status.py), empty where nobody asked for one; flags and note beside
+    it (words with spaces between; a sentence), mostly empty;
     case, case_status, case_reason: of the curve (without the last dimension);
-    threshold_pressure (isometric), free_contraction (isobaric), each with its _status: of the
-    state of zero force, for curves that ask for it.
+    threshold_pressure (isometric), free_contraction (isobaric), each with its _status, _flags
+    and _note: of the state of zero force, for curves that ask for it.
     Along muscle: what the muscle is made of. Coordinates are the decimals of the study file.
 /effects     dims regime, path, effect: what leaving out an effect changes and costs, as measured by
              the study of effects (workflow/weights.py); only in results/dataset.nc
@@ -31,7 +32,7 @@ import numpy as np
 import xarray as xr
 
 from solver.case import MODELS
-from solver.record import VARIABLES
+from solver.record import VARIABLES, Solution
 from workflow import discretisation, reference
 from workflow.aside import aside
 from workflow.config import StudiedMuscle
@@ -39,7 +40,7 @@ from workflow.records import Curve
 from workflow.schema import HELD_KEY, SWEPT_KEY
 from workflow.weights import group as weights_group
 
-LAYOUT = 1
+LAYOUT = 2
 NAN = math.nan
 CONTROLS = {
     "contraction": {"units": "1", "long_name": "contraction, 1 - l/L"},
@@ -50,6 +51,7 @@ ZERO_FORCE = {
     "isometric": ("threshold_pressure", "pressure", "pressure of zero force"),
     "isobaric": ("free_contraction", "contraction", "contraction of zero force"),
 }
+WORDS = ("status", "flags", "note")  # of a state
 FORCE_ERROR = {"units": "N", "long_name": "bound on the discretisation error of the force"}
 MUSCLE = {  # coordinates along muscle: (unit, long name, value)
     "inner_diameter": ("mm", "initial inner diameter", lambda m: m.muscle.inner_diameter),
@@ -113,7 +115,7 @@ def _group(name: str, curves: Sequence[Curve], muscles: Mapping[str, StudiedMusc
     shape = tuple(map(len, axes.values()))
     states = {v: np.full(shape, np.nan) for v in VARIABLES if v not in axes}
     labels = {v: np.full(shape[:-1], "", object) for v in ("case", "case_status", "case_reason")}
-    status = np.full(shape, "", object)
+    words = {name: np.full(shape, "", object) for name in WORDS}
     force_error = np.full(shape, np.nan)
     for curve in curves:
         at = tuple(place_of[dim][value] for dim, value in _labels(curve, held).items())
@@ -124,7 +126,9 @@ def _group(name: str, curves: Sequence[Curve], muscles: Mapping[str, StudiedMusc
         force_error[(*at, along)] = discretisation.error(curve.case, curve.solution, "force")[
             chosen
         ]
-        status[(*at, along)] = [curve.solution.state_status[k].value for k in chosen]
+        said = [_words(curve.solution, k) for k in chosen]
+        for word, texts in words.items():
+            texts[(*at, along)] = [of_state[word] for of_state in said]
         labels["case"][at] = curve.key
         labels["case_status"][at] = curve.solution.status.value
         labels["case_reason"][at] = curve.solution.reason
@@ -134,7 +138,8 @@ def _group(name: str, curves: Sequence[Curve], muscles: Mapping[str, StudiedMusc
         unit, long_name = VARIABLES[variable]
         data[variable] = (dims, values, {"units": unit, "long_name": long_name})
     data["force_error"] = (dims, force_error, FORCE_ERROR)
-    data["status"] = (dims, status.astype(str), {"long_name": "status of the state"})
+    for word, texts in words.items():
+        data[word] = (dims, texts.astype(str), {"long_name": f"{word} of the state"})
     for variable, texts in labels.items():
         long_name = variable.replace("_", " ") + (" key" if variable == "case" else "")
         data[variable] = (dims[:-1], texts.astype(str), {"long_name": long_name})
@@ -186,15 +191,29 @@ def _zero_force(name: str, curves: Sequence[Curve], data: xr.Dataset) -> dict[st
         return {}
     variable, state, long_name = ZERO_FORCE[name]
     value = xr.full_like(data.case, NAN, dtype=float)
-    status = xr.full_like(data.case, "", dtype="U16")
+    words = {word: xr.full_like(data.case, "", dtype=object) for word in WORDS}
     value.attrs = {"units": CONTROLS[state]["units"], "long_name": long_name}
-    status.attrs = {"long_name": "status of the state of zero force"}
     for curve in with_zero:
         at = _labels(curve, HELD_KEY[name])
         last = len(curve.case.path.stops)
         value.loc[at] = curve.solution.states[state][last]
-        status.loc[at] = curve.solution.state_status[last].value
-    return {variable: value, f"{variable}_status": status}
+        for word, text in _words(curve.solution, last).items():
+            words[word].loc[at] = text
+    found = {variable: value}
+    for word, texts in words.items():
+        found[f"{variable}_{word}"] = texts.astype(str)
+        found[f"{variable}_{word}"].attrs = {"long_name": f"{word} of the state of zero force"}
+    return found
+
+
+def _words(solution: Solution, state: int) -> dict[str, str]:
+    """What is said of a state, by the names in WORDS."""
+    flags = " ".join(sorted(solution.flags[state]))
+    return {
+        "status": solution.state_status[state].value,
+        "flags": flags,
+        "note": solution.notes[state],
+    }
 
 
 def _reference() -> xr.Dataset:

@@ -12,7 +12,7 @@ from solver import record
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.record import VARIABLES, NoRecord, Solution, unreached
-from solver.status import CaseStatus, StateStatus
+from solver.status import CaseStatus, Flag, StateStatus
 
 
 @pytest.fixture
@@ -33,6 +33,8 @@ def solution():
         reason="no state found beyond 15 % · ε",
         states=states,
         state_status=[StateStatus.CONVERGED, StateStatus.UNSTABLE, StateStatus.NOT_REACHED],
+        flags=[frozenset(), frozenset({Flag.SMOOTHED, Flag.OVERSTRAINED}), frozenset()],
+        notes=["", "threads of 3 N · stretched by 1.1", ""],
         fields={1: {"corners": corners, "stress": -corners}},
         log="line 1\nline 2",
     )
@@ -54,6 +56,8 @@ def test_round_trip(written, case, solution):
         solution.log,
     )
     assert read.state_status == solution.state_status
+    assert read.flags == solution.flags
+    assert read.notes == solution.notes
     assert read.states.keys() == VARIABLES.keys()
     for name in VARIABLES:
         np.testing.assert_array_equal(read.states[name], solution.states[name])
@@ -213,6 +217,26 @@ def test_another_layout_is_named(written):
         record.read(written)
 
 
+def test_a_record_of_an_older_version_is_refused_by_its_layout(written):
+    content = written.read_bytes()
+    written.write_bytes(content.replace(b" layout 3 ", b" layout 2 ", 1))
+    with pytest.raises(NoRecord, match="is a muscle-case layout 2, of another version"):
+        record.read(written)
+
+
+def test_nothing_is_said_of_a_state_unless_given(tmp_path, case):
+    plain = Solution(
+        status=CaseStatus.TIMEOUT,
+        reason="late",
+        states=unreached(3),
+        state_status=[StateStatus.NOT_REACHED] * 3,
+    )
+    record.write(tmp_path / "plain.h5", case, plain)
+    _, read = record.read(tmp_path / "plain.h5")
+    assert read.flags == [frozenset()] * 3
+    assert read.notes == [""] * 3
+
+
 def reseal(path):
     """What is wrong then is not the checksum."""
     path.write_bytes(record.sealed(path.read_bytes()))
@@ -245,7 +269,9 @@ def test_missing_attribute(written, attribute):
     assert_no_record(written)
 
 
-@pytest.mark.parametrize("name", ["states", "states/force", "states/status"])
+@pytest.mark.parametrize(
+    "name", ["states", "states/force", "states/status", "states/flags", "states/note"]
+)
 def test_missing_dataset(written, name):
     with h5py.File(written, "a") as file:
         del file[name]
@@ -264,5 +290,12 @@ def test_states_of_another_length(written):
 def test_unknown_word_for_a_state(written):
     with h5py.File(written, "a") as file:
         file["states/status"][0] = b"fine"
+    reseal(written)
+    assert_no_record(written)
+
+
+def test_unknown_flag_of_a_state(written):
+    with h5py.File(written, "a") as file:
+        file["states/flags"][0] = b"odd"
     reseal(written)
     assert_no_record(written)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver.load_path import PathKind
-from solver.status import CaseStatus, StateStatus, case_status, state_status
+from solver.status import CaseStatus, Flag, StateStatus, case_status, state_status
 
 GOOD = {
     "force": 100.0,
@@ -16,7 +16,7 @@ GOOD = {
     "unstable_modes": 0.0,
     "stiffness": 5.0,
 }
-CONVERGED, UNSTABLE, INVALID, NOT_REACHED = StateStatus
+CONVERGED, UNSTABLE, INVALID, NOT_REACHED, _ = StateStatus
 
 
 def status_of(kind: PathKind, **changes: float) -> StateStatus:
@@ -85,7 +85,9 @@ def test_the_vocabulary():
         "unstable",
         "invalid_state",
         "not_reached",
+        "no_root",
     ]
+    assert [f.value for f in Flag] == ["overstrained", "smoothed"]
     assert [s.value for s in CaseStatus] == [
         "converged",
         "limit_point",

@@ -1,6 +1,7 @@
 """The dataset holds every state at its labels, says what is missing, and is the same each time."""
 
 import csv
+from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 import xarray as xr
 
 from solver.record import VARIABLES
+from solver.status import Flag
 from workflow import dataset, failures, records
 from workflow.plan import Place
 from workflow.scene_data import SceneData
@@ -121,10 +123,29 @@ def test_threshold(study, tree):
     group = tree["isometric"].sel(at)
     assert float(group.threshold_pressure) == value(key, "pressure", 2)
     assert group.threshold_pressure_status == "converged"
+    assert (group.threshold_pressure_flags, group.threshold_pressure_note) == ("", "")
     eq_1 = tree["isometric"].sel({**at, "model": "geometric"})
     assert np.isnan(eq_1.threshold_pressure)
     assert eq_1.threshold_pressure_status == ""
     assert "free_contraction" not in tree["isobaric"]
+
+
+def test_what_is_said_of_a_state_stands_beside_its_status(study):
+    """Flags and notes of every state, those of zero force among them."""
+    found, folder = study
+    key = found.scenes["threshold"][Place("isometric", "one", "solid", "default", 0.1)]
+    curve = next(c for c in records.curves_of_study(found, folder) if c.key == key)
+    of_case = curve.solution
+    marked = replace(
+        of_case,
+        flags=[frozenset(), frozenset({Flag.SMOOTHED, Flag.OVERSTRAINED}), frozenset()],
+        notes=["", "of the second", "of zero force"],
+    )
+    tree = dataset.build([replace(curve, solution=marked)], found.study.muscles)
+    group = tree["isometric"].to_dataset().squeeze()
+    assert group.flags.values.tolist() == ["", "overstrained smoothed"]
+    assert group.note.values.tolist() == ["", "of the second"]
+    assert group.threshold_pressure_note == "of zero force"
 
 
 def test_reference_has_both_maps(tree):
