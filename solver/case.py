@@ -49,6 +49,7 @@ class Case:
     Attributes
     ----------
     fields_at : stops of the path at which fields (deformed shape, stress) are recorded too
+    numerics : what goes with the size of the muscle and was left out is filled in
 
     Raises
     ------
@@ -66,6 +67,7 @@ class Case:
     fields_at: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "numerics", self.numerics.of(self.muscle))
         if self.model not in MODELS:
             raise UnsolvableCase("model", self.model, ", ".join(MODELS))
         if self.muscle.braid is not None and self.thread is None:

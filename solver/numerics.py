@@ -1,17 +1,20 @@
 """Numerical settings: what changes the error and the cost of a solve, but not the problem."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from geometry.cell import CellMesh
 from geometry.meridian import MeridianMesh
+from geometry.muscle import Muscle
 from geometry.refusal import is_count, is_number
 from geometry.section import SectionMesh
 from solver.material import Thread
 from solver.refusal import UnsolvableCase
 
 ONE = {"unit": "1"}
+CLAMP_WALL = 2.0  # mm, of the muscle of the paper, for which springs and
+SLACK_DIAMETER = 20.0  # slackening were chosen
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,18 +41,28 @@ class Newton:
 class Clamp:
     """How a clamped end holds the tube: springs of density k min(s / ramp, 1)^2, s from the cap.
 
-    The ramp goes with the wall: a thick soft wall on a short ramp turns inside out.
+    The ramp goes with the wall: a thick soft wall on a short ramp turns inside out. So do springs
+    that are left out: a muscle scaled by a factor has its forces scaled by the square of it.
     """
 
     ramp: float = field(default=1.0, metadata={"unit": "wall thickness"})
-    thread_stiffness: float = field(default=200.0, metadata={"unit": "N/mm3"})  # on the layers
-    inner_stiffness: float = field(default=20.0, metadata={"unit": "N/mm3"})  # on the inner surface
+    thread_stiffness: float | None = field(default=None, metadata={"unit": "N/mm3"})  # on layers
+    inner_stiffness: float | None = field(default=None, metadata={"unit": "N/mm3"})  # inside
 
     def __post_init__(self) -> None:
         for name in ("ramp", "thread_stiffness", "inner_stiffness"):
             value = getattr(self, name)
-            if not (is_number(value) and value > 0):
+            if not ((is_number(value) and value > 0) or (value is None and name != "ramp")):
                 raise UnsolvableCase(name, value, "a finite number > 0")
+
+    def of(self, muscle: Muscle) -> "Clamp":
+        """With what was left out: 200 N/mm3 on the layers, 20 inside, at 2 mm of wall."""
+        thinner = CLAMP_WALL / muscle.wall_thickness
+        return replace(
+            self,
+            thread_stiffness=_given(self.thread_stiffness, 200.0 * thinner),
+            inner_stiffness=_given(self.inner_stiffness, 20.0 * thinner),
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,19 +71,26 @@ class Slack:
 
     Threads stiffer than ``stiffness`` work at smaller strains and get a width narrower in
     proportion; otherwise the smoothing itself would carry load. docs/decisions has the numbers.
+    Left out it goes with the muscle's section, as forces do.
     """
 
     width: float = field(default=1e-3, metadata=ONE)
-    stiffness: float = field(default=315.0, metadata={"unit": "N"})  # EA of the default width
+    stiffness: float | None = field(default=None, metadata={"unit": "N"})  # EA of that width
 
     def __post_init__(self) -> None:
         if not (is_number(self.width) and 0 < self.width <= 0.1):
             raise UnsolvableCase("width", self.width, "more than 0, at most 0.1")
-        if not (is_number(self.stiffness) and self.stiffness > 0):
+        if not (self.stiffness is None or (is_number(self.stiffness) and self.stiffness > 0)):
             raise UnsolvableCase("stiffness", self.stiffness, "a finite number > 0 (N)")
+
+    def of(self, muscle: Muscle) -> "Slack":
+        """With a stiffness that was left out: 315 N at an inner diameter of 20 mm."""
+        wider = (muscle.inner_diameter / SLACK_DIAMETER) ** 2
+        return replace(self, stiffness=_given(self.stiffness, 315.0 * wider))
 
     def width_of(self, thread: Thread) -> float:
         """Strain over which this thread slackens [1]."""
+        assert self.stiffness is not None  # of a case it is given (``of``)
         return self.width * min(1.0, self.stiffness / thread.stiffness)
 
 
@@ -107,6 +127,14 @@ class Numerics:
     slack: Slack = field(default_factory=Slack)
     cell: CellMesh = field(default_factory=CellMesh)
     spread: Spread = field(default_factory=Spread)
+
+    def of(self, muscle: Muscle) -> "Numerics":
+        """With the defaults that go with the size of a muscle."""
+        return replace(self, clamp=self.clamp.of(muscle), slack=self.slack.of(muscle))
+
+
+def _given(value: float | None, otherwise: float) -> float:
+    return otherwise if value is None else value
 
 
 NUMERICS_OF_MODEL: dict[str, tuple[str, ...]] = {

@@ -191,6 +191,8 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
             values["kappa"] = case.rubber.kappa
         if case.effects.end is End.CLAMP:
             clamp = case.numerics.clamp
+            assert clamp.thread_stiffness is not None
+            assert clamp.inner_stiffness is not None
             values |= {
                 "clamp_ramp": clamp.ramp * muscle.wall_thickness,
                 "clamp_thread_stiffness": clamp.thread_stiffness,

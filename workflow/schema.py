@@ -154,7 +154,7 @@ EffectsEntry = create_model(
 def _overrides(name: str, kind: Any) -> type[Entry]:
     """A schema with the fields of a dataclass, all of which may be left out."""
     types = {
-        f.name: f.type if get_origin(f.type) is None else _tuple_of(f.type) for f in fields(kind)
+        f.name: _tuple_of(f.type) if get_origin(f.type) is tuple else f.type for f in fields(kind)
     }
     return create_model(
         f"{name}_entry", __base__=Entry, **{key: (kind | None, None) for key, kind in types.items()}

@@ -58,8 +58,8 @@ def test_refused_numerics(kind, changes):
     assert refused.value.field == field
 
 
-def test_stiff_threads_slacken_over_a_narrower_strain():
-    slack = Slack()
+def test_stiff_threads_slacken_over_a_narrower_strain(muscle):
+    slack = Slack().of(muscle)
     assert slack.width_of(Thread(stiffness=20)) == 1e-3
     assert slack.width_of(Thread(stiffness=315)) == 1e-3
     assert slack.width_of(Thread(stiffness=3150)) == pytest.approx(1e-4)
