@@ -8,7 +8,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from workflow.study_error import StudyError
+from workflow.study.errors import StudyError
 
 STUDY = Path("config/config.yaml")
 DATASET = Path("results/dataset.nc")
@@ -82,20 +82,22 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _plan(given: argparse.Namespace):
-    from workflow.config import load
-    from workflow.plan import plan
+    from workflow.plan.plan import plan
+    from workflow.study.study import load
 
     return plan(load(given.study))
 
 
 def _gather(given: argparse.Namespace) -> int:
-    from workflow import dataset, deviation, failures, records, study_groups
-    from workflow.aside import aside
+    from geometry.files import aside
+    from workflow.analyses import dataset_groups
+    from workflow.data import dataset, deviation, records
+    from workflow.run import failures
 
     plan = _plan(given)
     curves = records.curves_of_study(plan)
-    with study_groups.alone(given.dataset):
-        others = study_groups.found(given.failures.parent)
+    with dataset_groups.alone(given.dataset):
+        others = dataset_groups.found(given.failures.parent)
         tree = dataset.build(curves, plan.study.muscles, effects=True, others=others)
         dataset.write(tree, given.dataset)
     failures.write(plan, {curve.key: curve.solution for curve in curves}, given.failures)
@@ -107,35 +109,35 @@ def _gather(given: argparse.Namespace) -> int:
 
 
 def _figure(given: argparse.Namespace) -> int:
-    from workflow import figure
+    from workflow.figures import figure
 
     figure.make(_plan(given), given.scene, given.output)
     return 0
 
 
 def _fields(given: argparse.Namespace) -> int:
-    from workflow import paraview
+    from workflow.data import paraview
 
     paraview.write(given.record, given.state, given.output)
     return 0
 
 
 def _calibrate(given: argparse.Namespace) -> int:
-    from workflow.calibration import program
+    from workflow.analyses.calibration import program
 
     program.run(given.study, given.tables, given.figures, given.muscles)
     return 0
 
 
 def _page(given: argparse.Namespace) -> int:
-    from workflow import page
+    from workflow.report import html_page
 
-    page.write(given.output, given.title, given.caption, given.pictures, given.tables)
+    html_page.write(given.output, given.title, given.caption, given.pictures, given.tables)
     return 0
 
 
 def _explain(given: argparse.Namespace) -> int:
-    from workflow import explain
+    from workflow.plan import explain
 
     for line in explain.lines(_plan(given)):
         print(line)
@@ -143,15 +145,15 @@ def _explain(given: argparse.Namespace) -> int:
 
 
 def _weigh(given: argparse.Namespace) -> int:
-    from workflow import weights
+    from workflow.plan import effect_costs
 
-    weights.measure(str(given.study))
-    print(f"written: {weights.FILE.name}, {weights.origin()}")
+    effect_costs.measure(str(given.study))
+    print(f"written: {effect_costs.FILE.name}, {effect_costs.origin()}")
     return 0
 
 
 def _cases(given: argparse.Namespace) -> int:
-    from workflow import records
+    from workflow.data import records
 
     for key, case in _asked(given).items():
         print(f"{key}  {records.status(key, case.label):13}  {case.label}")
@@ -162,35 +164,35 @@ def _asked(given: argparse.Namespace):
     """Cases by key: those of the scenes, or those of a study that is named."""
     if given.name is None:
         return _plan(given).cases
-    from workflow import studies
+    from workflow.analyses import analysis
 
-    return {asked.case.key: asked for asked in studies.cases(given.name, str(given.study))}
+    return {asked.case.key: asked for asked in analysis.cases(given.name, str(given.study))}
 
 
 def _study(given: argparse.Namespace) -> int:
-    from workflow import studies, study_groups
+    from workflow.analyses import analysis, dataset_groups
 
-    studies.evaluate(given.name, str(given.study), given.table, given.figures)
-    study_groups.add(given.name, given.table, given.dataset)
+    analysis.evaluate(given.name, str(given.study), given.table, given.figures)
+    dataset_groups.add(given.name, given.table, given.dataset)
     return 0
 
 
 def _benchmark(given: argparse.Namespace) -> int:
-    from workflow import benchmark
+    from workflow.analyses.accuracy import benchmark
 
     benchmark.make(given.study, given.runs, given.costs, given.table)
     return 0
 
 
 def _bounds(given: argparse.Namespace) -> int:
-    from workflow import discretisation
+    from workflow.plan import mesh_error
 
-    discretisation.take_over(given.table)
+    mesh_error.take_over(given.table)
     return 0
 
 
 def _failures(given: argparse.Namespace) -> int:
-    from workflow import failures
+    from workflow.run import failures
 
     if not given.table.exists():
         raise StudyError(f"{given.table}: there is no such table; run snakemake")
@@ -201,7 +203,7 @@ def _failures(given: argparse.Namespace) -> int:
 
 
 def _retry(given: argparse.Namespace) -> int:
-    from workflow import records
+    from workflow.data import records
 
     for key, case in _asked(given).items():
         status = records.status(key, case.label)

@@ -5,8 +5,8 @@ import numpy as np
 from solver import record
 from solver.record import VARIABLES, Solution
 from solver.status import CaseStatus, StateStatus
-from workflow.config import load
-from workflow.plan import plan
+from workflow.plan.plan import plan
+from workflow.study.study import load
 
 STUDY = """\
 materials:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from workflow.run_lock import MARK
+from workflow.run.lock import MARK
 
 KILLED = signal.SIGKILL
 

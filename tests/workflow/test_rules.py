@@ -120,7 +120,7 @@ EDITS = {
     "solver/edp/newton.idp": MESHED | GATHER | DRAW91,
     "workflow/figures/fig90.py": DRAW90,
     "workflow/figures/style.py": DRAW90 | DRAW91,
-    "workflow/dataset.py": AFTER,
+    "workflow/data/dataset.py": AFTER,
     "config/reference/festo_musclesim_dmsp20.csv": AFTER,
 }
 

@@ -13,15 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from solver.status import StateStatus
+from workflow.data.states import COLUMN, CONTRACTION, FORCE, GOOD, REFERENCE, error_of
 from workflow.figures.labels import SERIES, shown
-from workflow.figures.states import (
-    COLUMN,
-    CONTRACTION,
-    FORCE,
-    GOOD,
-    REFERENCE,
-    error_of,
-)
 from workflow.figures.style import COMPARED, SOFT, SOURCES, grow, legend, series
 
 NOT_DRAWN = (StateStatus.INVALID_STATE.value, StateStatus.NOT_REACHED.value)

@@ -10,8 +10,8 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from geometry.drawing import draw as draw_muscle
 from geometry.muscle import Braid, Muscle
+from workflow.figures.muscle_drawing import draw as draw_muscle
 
 LENGTHS = ("inner_diameter", "wall_thickness", "length", "cap_length")
 LAYERS = ["layer_diameter_1 [mm]", "layer_diameter_2 [mm]"]

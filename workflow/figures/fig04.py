@@ -10,16 +10,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from workflow import reference
+from workflow.data import reference
+from workflow.data.states import CONTRACTION, FORCE, PRESSURE, SUSPECT, reference_curves, states
 from workflow.figures import curves
-from workflow.figures.states import (
-    CONTRACTION,
-    FORCE,
-    PRESSURE,
-    SUSPECT,
-    reference_curves,
-    states,
-)
 from workflow.figures.style import FULL, SOFT, SOURCES, labelled, legend, panels, percent
 
 MAP = "festo_musclesim"

@@ -12,10 +12,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
+from workflow.data.states import CONTRACTION, GOOD, NUMBER, PRESSURE, of_curve
+from workflow.data.stress import LARGEST, along_meridian, wall
 from workflow.figures import curves, stress_views
 from workflow.figures.labels import SERIES, series
-from workflow.figures.states import CONTRACTION, GOOD, NUMBER, PRESSURE, of_curve
-from workflow.figures.stress import LARGEST, along_meridian, wall
 from workflow.figures.stress_views import CAP, COLOURS
 from workflow.figures.style import FULL, grid
 

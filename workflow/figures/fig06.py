@@ -5,10 +5,10 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from workflow import reference
+from workflow.data import reference
+from workflow.data.states import CONTRACTION, FORCE, GOOD, PRESSURE, reference_at, states
 from workflow.figures import curves
 from workflow.figures.labels import constants
-from workflow.figures.states import CONTRACTION, FORCE, GOOD, PRESSURE, reference_at, states
 from workflow.figures.style import COLUMN_WIDTH, SOFT, SOURCES, labelled, legend, panels
 
 PAPER_THRESHOLD = 0.15  # MPa

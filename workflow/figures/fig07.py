@@ -9,9 +9,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from workflow.figures import curves
-from workflow.figures.labels import SERIES, constants, series
-from workflow.figures.states import (
+from workflow.data.states import (
     COLUMN,
     CONTRACTION,
     DIAMETER,
@@ -21,6 +19,8 @@ from workflow.figures.states import (
     error_of,
     states,
 )
+from workflow.figures import curves
+from workflow.figures.labels import SERIES, constants, series
 from workflow.figures.style import FULL, SOFT, panels, percent
 
 INITIAL = "initial_inner_diameter [mm]"

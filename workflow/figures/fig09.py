@@ -4,9 +4,9 @@ from typing import Any
 
 import pandas as pd
 
+from workflow.data.states import ANGLE
 from workflow.figures import force_contraction
 from workflow.figures.force_contraction import draw
-from workflow.figures.states import ANGLE
 
 __all__ = ["draw", "table"]
 

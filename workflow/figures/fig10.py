@@ -8,9 +8,9 @@ from typing import Any
 
 import pandas as pd
 
+from workflow.data.states import DIAMETER, THREADS
 from workflow.figures import force_contraction
 from workflow.figures.force_contraction import draw
-from workflow.figures.states import DIAMETER, THREADS
 
 __all__ = ["draw", "table"]
 

@@ -10,19 +10,11 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from workflow.data.states import CONTRACTION, DIAMETER, FORCE, GOOD, PRESSURE, THREADS, error_of
 from workflow.figures import curves, force_contraction
 from workflow.figures.labels import SERIES, constants
-from workflow.figures.states import (
-    CONTRACTION,
-    DIAMETER,
-    FORCE,
-    GOOD,
-    PRESSURE,
-    THREADS,
-    error_of,
-)
 from workflow.figures.style import COLUMN_WIDTH, panels, percent
-from workflow.study_error import StudyError
+from workflow.study.errors import StudyError
 
 RATIO = "force / force of the narrowest [1]"
 SHARE = "force of the narrowest / its largest [1]"

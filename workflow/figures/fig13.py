@@ -5,8 +5,8 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+from workflow.data.states import CONTRACTION, FORCE
 from workflow.figures import walls
-from workflow.figures.states import CONTRACTION, FORCE
 from workflow.figures.style import percent
 
 

@@ -6,9 +6,9 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+from workflow.data.states import CONTRACTION, FORCE, PRESSURE, describe, states
 from workflow.figures import curves
 from workflow.figures.labels import SERIES, constants, series
-from workflow.figures.states import CONTRACTION, FORCE, PRESSURE, describe, states
 from workflow.figures.style import COLUMN_WIDTH, panels, percent
 
 

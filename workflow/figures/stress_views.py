@@ -7,8 +7,8 @@ import pandas as pd
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.tri import Triangulation
 
+from workflow.data.stress import LARGEST, SMALLEST
 from workflow.figures.labels import SERIES
-from workflow.figures.stress import LARGEST, SMALLEST
 from workflow.figures.style import SOFT
 
 COLOURS = "RdBu_r"

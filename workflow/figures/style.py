@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
 from matplotlib.ticker import MultipleLocator, PercentFormatter
 
-from workflow.aside import aside
+from geometry.files import aside
 
 FULL, COLUMN_WIDTH = 7.0, 4.6  # widths [inch]
 LEFT, RIGHT, TOP, BOTTOM = 0.7, 0.14, 0.28, 0.48  # margins around the axes [inch]

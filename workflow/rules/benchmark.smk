@@ -1,7 +1,7 @@
 # What the accuracy study costs on this machine: snakemake --cores 2 benchmark
 #
 #   in   the table of the study, so that its figure has both
-#   out  results/cost.csv               medians of several runs one after the other; workflow/benchmark.py
+#   out  results/cost.csv               medians of several runs one after the other
 #        results/tables/benchmark.csv   how cost grows
 #        results/figures/accuracy.png   drawn again with these costs
 #

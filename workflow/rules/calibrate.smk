@@ -14,8 +14,8 @@ rule calibrate:
             "geometry/*.py",
             "solver/*.py",
             "solver/edp/*",
-            "workflow/*.py",
-            "workflow/calibration/*.py",
+            *READING,
+            "workflow/analyses/calibration/*.py",
             "workflow/figures/style.py",
         ),
     output:

@@ -2,8 +2,8 @@
 #
 #   in   the study file: config/config.yaml, or the one of --config study=FILE
 #
-# Only workflow/config.py reads a study file, so it is no configfile: and no input of a rule. What a
-# job takes from it is one parameter of its rule, so a job runs again when that changes and not
+# Only workflow/study/study.py reads a study file, so it is no configfile: and no input of a rule.
+# What a job takes from it is one parameter of its rule, so a job runs again when that changes and not
 # when the file is reordered, commented or touched. Sources are inputs, compared by content.
 import json
 import re
@@ -12,11 +12,12 @@ import sys
 from pathlib import Path
 
 from solver.case import MODELS, digest
-from workflow import paraview, studies
-from workflow.config import load
-from workflow.figure import drawn
-from workflow.plan import plan
-from workflow.study_error import StudyError
+from workflow.analyses import analysis
+from workflow.data import paraview
+from workflow.figures.figure import drawn
+from workflow.plan.plan import plan
+from workflow.study.errors import StudyError
+from workflow.study.study import load
 
 # Programs run with the Python of Snakemake itself, whether or not its environment is activated, and
 # on one core each: there are as many at a time as there are cores.
@@ -52,6 +53,11 @@ wildcard_constraints:
     figure="|".join(map(re.escape, filter(drawn, PLAN.study.scenes))) or "none",
 
 
+# What plans a study and reads its records, which all that is made of records needs.
+READING = ["workflow/*.py", "workflow/study/*.py", "workflow/plan/*.py", "workflow/data/*.py"]
+READING += ["geometry/files.py"]
+
+
 def sources(*patterns, without=()):
     """Source files of some folders, except those named."""
     found = {str(path) for pattern in patterns for path in Path().glob(pattern)}
@@ -65,7 +71,7 @@ def record_of(case):
 def mesh_sources(wildcards):
     """All of geometry/ but what makes other kinds of files."""
     kind = json.loads(spec_of_mesh(wildcards))["kind"]
-    kinds = ("meridian", "section", "cell", "whole", "drawing", "painting")
+    kinds = ("meridian", "section", "cell", "whole")
     return sources("geometry/*.py", without=[f"geometry/{k}.py" for k in kinds if k != kind])
 
 
@@ -74,7 +80,7 @@ STUDIED = {}  # cases of the studies that are asked for, by key
 
 def cases_of_study(name):
     """Cases of a study by key; making them takes a second, so not before it is asked for."""
-    found = {asked.case.key: asked for asked in studies.cases(name, STUDY)}
+    found = {asked.case.key: asked for asked in analysis.cases(name, STUDY)}
     STUDIED.update(found)
     return found
 
@@ -82,7 +88,7 @@ def cases_of_study(name):
 def case_of(key):
     """A case of the scenes or of a study."""
     if key not in PLAN.cases and key not in STUDIED:
-        for name in studies.FIGURES:
+        for name in analysis.FIGURES:
             cases_of_study(name)
     return PLAN.cases.get(key) or STUDIED[key]
 
@@ -129,7 +135,7 @@ def figure_sources(wildcards):
     own = f"workflow/figures/{wildcards.figure}.py"
     others = [file for file in sources("workflow/figures/fig*.py") if file != own]
     shown = [] if wildcards.figure in PLAN.scenes else ["geometry/*.py"]
-    return sources("workflow/figures/*.py", "workflow/*.py", *shown, without=others)
+    return sources("workflow/figures/*.py", *READING, *shown, without=others)
 
 
 def deviations():

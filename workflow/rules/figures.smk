@@ -7,7 +7,7 @@
 rule figure:
     input:
         records=records_of_scene,
-        reference=sources("config/reference/*.csv", "workflow/discretisation.csv"),
+        reference=sources("config/reference/*.csv", "workflow/plan/mesh_error.csv"),
         sources=figure_sources,
     output:
         png="results/figures/{figure}.png",

@@ -1,7 +1,7 @@
 # Records -> dataset, and tables of what failed and of how far it is from what was measured.
 #
 #   in   all records of the study; the reference maps
-#   out  results/dataset.nc             layout: workflow/dataset.py
+#   out  results/dataset.nc             layout: workflow/data/dataset.py
 #        results/tables/failures.csv    what did not work out; often a header only
 #        results/tables/deviation.csv   from the maps, of the muscles of fig04, which these are of
 #        results/complete.txt           if no case failed; else the run ends with an error here
@@ -10,8 +10,13 @@
 rule gather:
     input:
         records=[record_of(case) for case in PLAN.cases],
-        reference=sources("config/reference/*.csv", "workflow/discretisation.csv"),
-        sources=sources("workflow/*.py", "workflow/weights.csv"),
+        reference=sources("config/reference/*.csv", "workflow/plan/mesh_error.csv"),
+        sources=sources(
+            *READING,
+            "workflow/plan/effect_costs.csv",
+            "workflow/analyses/*.py",
+            "workflow/run/failures.py",
+        ),
     output:
         dataset="results/dataset.nc",
         failures="results/tables/failures.csv",

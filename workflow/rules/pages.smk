@@ -28,10 +28,10 @@ def page_sources():
         fitted = ["results/tables/calibration_values.csv", "results/tables/calibration.csv"]
         pictures = ["results/figures/calibration.png"]
         pages["calibration"] = VERDICT, "Calibration", pictures, fitted
-    for study, pictures in studies.FIGURES.items():
+    for study, pictures in analysis.FIGURES.items():
         if pictures and has_claims():
             drawn_by = expand("results/figures/{picture}.png", picture=pictures)
-            notes = [f"results/tables/{study}_notes.csv"] if study in studies.NOTED else []
+            notes = [f"results/tables/{study}_notes.csv"] if study in analysis.NOTED else []
             pages[study] = CHAPTERS.get(study, EFFECTS), study.capitalize(), drawn_by, notes
     return pages
 

@@ -6,8 +6,8 @@ from snakemake.logging import logger
 from snakemake.settings.enums import Quietness
 
 from solver import freefem
-from workflow import run_lock
-from workflow.progress import Progress, is_no_chatter
+from workflow.run import lock
+from workflow.run.progress import Progress, is_no_chatter
 
 PROGRESS = []  # of the run that goes on
 
@@ -56,8 +56,8 @@ def look_once():
 
 
 onstart:
-    run_lock.take(Path(".snakemake/run.lock"))
-    run_lock.tidy(Path("results"))
+    lock.take(Path(".snakemake/run.lock"))
+    lock.tidy(Path("results"))
     check_freefem()
     follow()
     look_once()

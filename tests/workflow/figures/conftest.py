@@ -12,9 +12,9 @@ from solver.case import Case
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin, Thread
 from solver.status import StateStatus
-from workflow.config import load
-from workflow.plan import plan
-from workflow.scene_data import SceneData
+from workflow.data.scene_data import SceneData
+from workflow.plan.plan import plan
+from workflow.study.study import load
 
 KNOCKED_DOWN = 0.8  # force of the made-up finite elements over that of Eq. (1)
 SECTION = {  # two triangles: a wall from R = 10 to 12 and Z = 0 to 150, not deformed

@@ -6,9 +6,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from solver.status import StateStatus
+from workflow.data.states import CONTRACTION, FORCE, PRESSURE, states
 from workflow.figures import curves
 from workflow.figures.labels import SERIES, series
-from workflow.figures.states import CONTRACTION, FORCE, PRESSURE, states
 
 
 @pytest.fixture

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from solver.status import StateStatus
+from workflow.data.principal import principal
+from workflow.data.states import COLUMN, CONTRACTION, FORCE, PRESSURE, WALL
+from workflow.data.stress import LARGEST, SMALLEST, along_meridian, wall
 from workflow.figures.labels import SERIES
-from workflow.figures.states import COLUMN, CONTRACTION, FORCE, PRESSURE, WALL
-from workflow.figures.stress import LARGEST, SMALLEST, along_meridian, wall
-from workflow.principal import principal
-from workflow.study_error import StudyError
+from workflow.study.errors import StudyError
 
 ANGLE = np.arctan(np.pi * 21.2 / 144)
 FE = 0.8  # of the force of Eq. (1), see conftest.py

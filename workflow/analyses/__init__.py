@@ -1,0 +1,1 @@
+"""Analyses of the models themselves, one folder each; what they share is in ``analysis``."""

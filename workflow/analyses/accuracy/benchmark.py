@@ -1,0 +1,209 @@
+"""How long the solves of the accuracy study take on this machine.
+
+results/cost.csv               medians of seconds by purpose, unknowns, memory, one row per case
+results/tables/benchmark.csv   exponents: how seconds and memory grow with unknowns and with states
+
+Every case is meshed once and solved several times from scratch, one process at a time, in a
+temporary folder and beside all records that there are. Rounds, not runs of one case, follow each
+other, so that a slow minute of the machine spoils one run of many cases and not all of one.
+"""
+
+import json
+import os
+import platform
+import re
+import resource
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pandas as pd
+
+from geometry.files import aside
+from solver.freefem import Limits, executable
+from solver.solve import solve
+from workflow.analyses import analysis
+from workflow.analyses.accuracy import costs as accuracy_costs
+from workflow.analyses.analysis import StudyCase
+from workflow.study.errors import StudyError
+
+SETS = ("mesh", "steps", "tolerance")
+# CPU seconds of a curve of 21 states on the machine on which this was written: mesh 1/1 (the mean
+# of the cell's meshes), and the power of the refinement with which they grow. Only for saying
+# beforehand what a run will take.
+EXPECTED = {"membrane": (0.15, 0.4), "solid": (0.45, 2.2), "cell": (23.0, 3.0)}
+AROUND = 0.5  # s, Python and the mesh of one solve, there
+STATES = 21
+WARM = 5  # repetitions of a model that takes next to nothing
+
+
+def chosen(study_file: Path) -> list[StudyCase]:
+    """The curves of the study whose cost is of interest, each case once."""
+    asked = analysis.cases("accuracy", str(study_file))
+    curves = [a for a in asked if a.tags["set"] in SETS and a.tags["quantity"] == "curve"]
+    return list({a.case.key: a for a in reversed(curves)}.values())[::-1]
+
+
+def run(cases: Sequence[StudyCase], runs: int, say: Callable[[str], None]) -> pd.DataFrame:
+    """Medians of all costs, one row per case; ``say`` is told how it goes."""
+    expected = [expected_seconds(asked) for asked in cases]
+    with TemporaryDirectory() as scratch:
+        bench = _Bench(Path(scratch))
+        slow = bench.slowness(cases)
+        total = slow * sum(expected) * runs
+        say(f"{len(cases)} cases, {runs} runs each: about {duration(total)} on this machine")
+        start, spent = time.monotonic(), 0.0
+        found: dict[str, list[dict[str, float]]] = {asked.case.key: [] for asked in cases}
+        for number in range(runs):
+            for k, (asked, seconds) in enumerate(zip(cases, expected, strict=True), 1):
+                cost = bench.cost(asked)
+                found[asked.case.key].append(cost)
+                spent += seconds
+                left = (time.monotonic() - start) * (sum(expected) * runs / spent - 1)
+                say(
+                    f"run {number + 1} of {runs}, case {k} of {len(cases)}: {asked.label}: "
+                    f"{cost[accuracy_costs.SOLVE]:.3g} s; about {duration(left)} left"
+                )
+    rows = [
+        {"case": asked.case.key, "label": asked.label}
+        | {name: asked.tags[name] for name in ("set", "model", "mesh", "refinement", "tolerance")}
+        | {"states": asked.case.path.states, "runs": runs}
+        | pd.DataFrame(found[asked.case.key]).median().to_dict()
+        for asked in cases
+    ]
+    return pd.DataFrame(rows)
+
+
+class _Bench:
+    """A folder in which cases are meshed and solved as the workflow does it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.meshing: dict[str, float] = {}  # CPU seconds by mesh
+
+    def cost(self, asked: StudyCase) -> dict[str, float]:
+        """Of one solve."""
+        if asked.mesh is None:
+            return self._direct(asked)
+        mesh = self._mesh(asked)
+        names = {name: self.folder / name for name in ("record", "cost", "log")}
+        outputs = [f"--{name}={path}" for name, path in names.items()]
+        _python(["solver", "--case", asked.case.canonical(), "--mesh", str(mesh), *outputs])
+        cost = json.loads(names["cost"].read_text())
+        return accuracy_costs.of_run(cost) | {"mesh [s]": self.meshing[asked.mesh]}
+
+    def _mesh(self, asked: StudyCase) -> Path:
+        assert asked.mesh is not None
+        path = self.folder / asked.mesh
+        if not path.exists():
+            self.meshing[asked.mesh] = _python(
+                ["geometry", "-", str(path)], asked.case.mesh_spec() or ""
+            )
+        return path
+
+    def _direct(self, asked: StudyCase) -> dict[str, float]:
+        """A model that needs no process of its own, imported already."""
+        limits = Limits(wall_time=60, memory=1000)
+        solve(asked.case, None, self.folder / "log", limits)
+        start = time.process_time()
+        for _ in range(WARM):
+            solve(asked.case, None, self.folder / "log", limits)
+        return {accuracy_costs.SOLVE: (time.process_time() - start) / WARM}
+
+    def slowness(self, cases: Iterable[StudyCase]) -> float:
+        """Wall seconds of the first membrane, as a multiple of what is expected of it."""
+        first = next((asked for asked in cases if asked.case.model == "membrane"), None)
+        if first is None:
+            return 1.0
+        self._mesh(first)
+        start = time.monotonic()
+        self.cost(first)
+        return (time.monotonic() - start) / expected_seconds(first)
+
+
+def expected_seconds(asked: StudyCase) -> float:
+    """Of one solve of a case, on the machine on which this was written."""
+    if asked.case.model not in EXPECTED:
+        return 0.3
+    seconds, power = EXPECTED[asked.case.model]
+    refinement = max(float(asked.tags["refinement"]), 1.0)
+    return AROUND + seconds * refinement**power * asked.case.path.states / STATES
+
+
+def _python(arguments: list[str], text: str = "") -> float:
+    """Run a program of the project; its CPU seconds.
+
+    Raises
+    ------
+    subprocess.CalledProcessError
+        If it fails.
+    """
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([sys.executable, "-m", *arguments], input=text, text=True, check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def write(costs: pd.DataFrame, path: Path) -> None:
+    """Write a table with a note on the machine above it, whole or not at all."""
+    with aside(path) as beside, beside.open("w", encoding="utf-8") as stream:
+        stream.writelines(f"# {line}\n" for line in machine())
+        costs.to_csv(stream, index=False)
+
+
+def machine() -> list[str]:
+    """What the seconds depend on."""
+    model = next(
+        (
+            line.partition(":")[2].strip()
+            for line in _lines(Path("/proc/cpuinfo"))
+            if line.startswith("model name")
+        ),
+        platform.processor() or platform.machine(),
+    )
+    load = f"{os.getloadavg()[0]:.1f} processes on average in the last minute"
+    said = subprocess.run(
+        [executable(), "-nw", "-v", "1", os.devnull], capture_output=True, text=True, check=False
+    ).stdout
+    found = re.search(r"FreeFem\+\+ v(\S+)", said)
+    version = found.group(1) if found else "unknown"
+    return [
+        f"{model}, {os.cpu_count()} cores; {platform.system()} {platform.release()}",
+        f"Python {platform.python_version()}, numpy {np.__version__}, FreeFEM {version}",
+        f"{time.strftime('%Y-%m-%d')}; {load}; medians of CPU seconds",
+    ]
+
+
+def _lines(path: Path) -> list[str]:
+    return path.read_text().splitlines() if path.exists() else []
+
+
+def duration(seconds: float) -> str:
+    """A time to wait, roughly."""
+    return f"{max(seconds, 1):.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
+
+
+def make(study_file: Path, runs: int, costs: Path, table: Path) -> None:
+    """Run the benchmark; write the costs of all cases, and how they grow.
+
+    Raises
+    ------
+    StudyError
+        If there are no runs to take a median of.
+    """
+    if runs < 1:
+        raise StudyError(f"--runs {runs} is refused\n  allowed: an integer >= 1")
+    measured = run(chosen(study_file), runs, _say)
+    write(measured, costs)
+    write(accuracy_costs.growth(measured), table)
+    _say(f"written: {costs}, {table}\n")
+
+
+def _say(text: str) -> None:
+    """A line of the progress; in a terminal it takes the place of the one before."""
+    end = "\r" if sys.stderr.isatty() else "\n"
+    print(f"\x1b[2K{text}" if end == "\r" else text, end=end, file=sys.stderr, flush=True)

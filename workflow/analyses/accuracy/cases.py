@@ -1,0 +1,215 @@
+"""What accuracy costs: errors of all models on many meshes, with many steps and tolerances.
+
+The normal condition: the curve at 0.3 MPa, 0 to 20 %, and the threshold pressure at 10 %. Three
+errors that are kept apart, all as shares of the curve's largest force:
+
+- discretisation: against what the same model converges to on ever finer meshes;
+- modelling: against what the fullest model converges to (``solid``);
+- deviation from each reference map, which no mesh and no model removes.
+
+Every curve of the scenes is solved on a mesh twice as fine too: its own discretisation error; that
+of the solid also from the planner's coarser mesh.
+Where the solution is smooth (a bare tube whose ends slide) the order is that of theory; the ends
+of the muscle spoil it. Elements are quadratic only. Costs are measured by benchmark.py beside
+this.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from geometry.cell import CellMesh
+from geometry.meridian import MeridianMesh
+from geometry.muscle import Muscle
+from geometry.section import SectionMesh
+from solver.case import Case
+from solver.effects import Effects, End, ThreadLaw
+from solver.load_path import LoadPath, PathKind
+from solver.material import MooneyRivlin
+from solver.numerics import Newton, Numerics
+from workflow.analyses.analysis import Solved, StudyCase
+from workflow.plan.effect_costs import MESHES
+from workflow.plan.plan import plan
+from workflow.study.study import Study
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+MUSCLE = "dmsp20"  # of the study file
+PRESSURE, CONTRACTION = 0.3, 0.1  # MPa, 1
+LARGEST = 0.2  # contraction
+STEP = 0.01
+FAMILY = (1, 2, 3, 4, 6)  # refinements of the default meshes
+BUTT_FAMILY, BUTT_LARGEST = (1, 2, 3, 4), 0.1  # its corner turns inside out beyond
+TUBE_FAMILY = (1, 2, 4, 8)
+COARSE: dict[str, dict[str, MeridianMesh | SectionMesh]] = {  # not of the default's family
+    "membrane": {
+        "coarser": MeridianMesh(cap_step=1, growth=1.8, body_step=2),
+        "coarsest": MeridianMesh(cap_step=3, growth=2.5, body_step=4),
+    },
+    "solid": {
+        "coarser": MESHES["coarser"]["section"],  # the planner's
+        "coarsest": SectionMesh(cap_step=4, growth=3, body_step=4),
+    },
+}
+CELLS = {  # few, as they are dear; their error is nearly all that they have no caps
+    "coarser": CellMesh(thread_size=1.5, body_size=0.4),
+    "1/1": CellMesh(),
+    "finer": CellMesh(thread_size=0.65, body_size=0.25),
+}
+STEPS = (0.1, 0.05, 0.02, 0.005)  # of contraction, beside STEP
+TOLERANCES = tuple(10.0**-k for k in range(3, 11))
+PART = {"membrane": "meridian", "solid": "section"}  # of the numerics, that is the mesh
+
+
+@dataclass(frozen=True)
+class _Setting:
+    """One row of the table: a model with its numerics."""
+
+    set: str
+    model: str
+    name: str  # of the mesh
+    numerics: Numerics = field(default_factory=Numerics)
+    effects: Effects = field(default_factory=Effects)
+    refinement: float = 0  # in a family of meshes; 0: in none
+    stops: tuple[float, ...] = ()
+
+    def tags(self, quantity: str) -> dict[str, str | float]:
+        """What its row says of it."""
+        return {
+            "set": self.set,
+            "model": self.model,
+            "end": str(self.effects.end) if self.model == "solid" else "",
+            "mesh": self.name,
+            "refinement": self.refinement,
+            "tolerance": self.numerics.newton.tolerance,
+            "quantity": quantity,
+        }
+
+
+def cases(study: Study) -> list[StudyCase]:
+    """The curve of every setting, the threshold pressure on every mesh, scenes on finer meshes."""
+    return [*_normal(study), *_tube(study), *_scenes(study)]
+
+
+def table(solved: list[Solved]) -> "pd.DataFrame":
+    """One row per setting and curve."""
+    from workflow.analyses.accuracy import table as accuracy_table
+
+    return accuracy_table.rows(solved)
+
+
+def draw(solved: list[Solved], table: "pd.DataFrame") -> dict[str, "Figure"]:
+    """Error against cost, and how errors fall."""
+    from workflow.analyses.accuracy import costs as accuracy_costs
+    from workflow.analyses.accuracy import figures
+
+    costs = accuracy_costs.of_cases(table["case"].dropna().unique())
+    return {
+        "accuracy": figures.overview(table, costs),
+        "accuracy_orders": figures.orders(table),
+    }
+
+
+def stops(step: float = STEP, largest: float = LARGEST) -> tuple[float, ...]:
+    """Contractions from 0 to the largest, in exact decimals."""
+    return tuple(round(step * k, 4) for k in range(round(largest / step) + 1))
+
+
+def settings() -> Iterator[_Setting]:
+    """All that the normal condition is solved with."""
+    yield _Setting("mesh", "geometric", "", stops=stops())
+    yield _Setting("mesh", "cylinder", "", stops=stops())
+    for model, part in PART.items():
+        for name, mesh in COARSE[model].items():
+            yield _Setting("mesh", model, name, Numerics(**{part: mesh}), stops=stops())
+        for m in FAMILY:
+            yield _Setting("mesh", model, f"1/{m}", _refined(part, m), refinement=m, stops=stops())
+        for step in STEPS:
+            yield _Setting("steps", model, "1/1", stops=stops(step))
+        for tolerance in TOLERANCES:
+            numerics = Numerics(newton=Newton(tolerance=tolerance))
+            yield _Setting("tolerance", model, "1/1", numerics, stops=stops())
+    for name, cell in CELLS.items():
+        yield _Setting("mesh", "cell", name, Numerics(cell=cell), stops=stops())
+    butt = Effects(end=End.BUTT, threads=ThreadLaw.TWO_WAY)
+    for m in BUTT_FAMILY:
+        numerics, few = _refined("section", m), stops(0.05, BUTT_LARGEST)
+        yield _Setting("butt", "solid", f"1/{m}", numerics, butt, refinement=m, stops=few)
+
+
+def _refined(part: str, refinement: int) -> Numerics:
+    """The default mesh of a model, every element cut into so many each way."""
+    default = getattr(Numerics(), part)
+    return Numerics(**{part: replace(default, refinement=refinement)})
+
+
+def _normal(study: Study) -> Iterator[StudyCase]:
+    """The normal condition with every setting."""
+    ours = study.muscles[MUSCLE]
+    threshold = LoadPath(
+        kind=PathKind.ISOMETRIC, held=CONTRACTION, stops=(PRESSURE,), zero_force=True
+    )
+    for setting in settings():
+        curve = Case(
+            muscle=ours.muscle,
+            rubber=ours.rubber,
+            thread=ours.thread,
+            path=LoadPath(kind=PathKind.ISOBARIC, held=PRESSURE, stops=setting.stops),
+            model=setting.model,
+            effects=setting.effects,
+            numerics=setting.numerics,
+        )
+        label = f"{setting.model} {setting.name}".strip()
+        yield StudyCase(curve, f"{label}, {setting.set}", setting.tags("curve"))
+        if setting.set == "mesh" and setting.model not in ("geometric", "cell"):
+            case = replace(curve, path=threshold)
+            yield StudyCase(case, f"{label}, threshold", setting.tags("threshold"))
+
+
+def _tube(study: Study) -> Iterator[StudyCase]:
+    """A bare tube at a stretch of 0.8 and 0.05 MPa: a smooth solution, known exactly."""
+    nbr = study.muscles[MUSCLE].rubber
+    tube = Muscle(inner_diameter=20, wall_thickness=2, length=4, braid=None)
+    for m in TUBE_FAMILY:
+        even = SectionMesh(cap_step=0.5, body_step=0.05, growth=1, refinement=m)
+        numerics = Numerics(section=even, newton=Newton(tolerance=1e-11))
+        effects = Effects(end=End.SLIDING)
+        setting = _Setting("tube", "solid", f"1/{m}", numerics, effects, refinement=m)
+        case = Case(
+            muscle=tube,
+            rubber=MooneyRivlin(c10=nbr.c10, c01=nbr.c01, kappa=2e6 * (nbr.c10 + nbr.c01)),
+            thread=None,
+            path=LoadPath(kind=PathKind.ISOMETRIC, held=0.2, stops=(0.05,)),
+            model="solid",
+            effects=effects,
+            numerics=numerics,
+        )
+        yield StudyCase(case, f"bare tube 1/{m}", setting.tags("curve"))
+
+
+def _scenes(study: Study) -> Iterator[StudyCase]:
+    """Every meshed curve of the scenes on its own mesh and on one twice as fine."""
+    for planned in plan(study).cases.values():
+        case = planned.case
+        if case.model not in PART:
+            continue
+        part = PART[case.model]
+        own = getattr(case.numerics, part)
+        yield from _pair(planned.label, case, own)
+        if own == SectionMesh():
+            yield from _pair(f"{planned.label}, coarser", case, MESHES["coarser"][part])
+
+
+def _pair(name: str, case: Case, mesh: MeridianMesh | SectionMesh) -> Iterator[StudyCase]:
+    """A curve on a mesh and on one twice as fine."""
+    finer = replace(mesh, refinement=2 * mesh.refinement)
+    for each in (mesh, finer):
+        numerics = replace(case.numerics, **{PART[case.model]: each})
+        fields = case.fields_at if numerics == case.numerics else ()  # a record that there is
+        setting = _Setting(
+            "scenes", case.model, name, numerics, case.effects, refinement=each.refinement
+        )
+        solved = replace(case, numerics=numerics, fields_at=fields)
+        yield StudyCase(solved, f"{name}, mesh 1/{each.refinement}", setting.tags("curve"))

@@ -1,0 +1,155 @@
+"""The scorecard of the paper's claims, with threads of other stiffness than the study's.
+
+The cases are those of the study itself, which have its EA, and the same again for every other EA by
+the membrane, which is fast and exact enough; the stress by the solid, which alone has it. Every EA
+makes one dataset, of which workflow/claims asks everything. What single threads change of the force
+of silicone is computed by the cell and is a group of the dataset of the study's EA.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from solver.material import Thread
+from solver.status import StateStatus
+from workflow.analyses.analysis import Solved, StudyCase
+from workflow.analyses.claims.claim import GEOMETRIC, MUSCLE
+from workflow.analyses.claims.scorecard import SWEPT_MODEL, scorecard
+from workflow.analyses.claims.stress import SUMMARY, summary
+from workflow.analyses.threads import cases as threads
+from workflow.data import dataset
+from workflow.data.records import Curve
+from workflow.plan.plan import Place, plan
+from workflow.study.errors import StudyError
+from workflow.study.study import StudiedMuscle, Study
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+STIFFNESSES = (50.0, 150.0, 315.0, 594.0, 650.0)  # N; 594 is the thickest thread that has room
+
+
+@dataclass(frozen=True)
+class PlacedCase(StudyCase):
+    """A case at its place in the dataset of one EA."""
+
+    place: Place | None = None
+    muscle: StudiedMuscle | None = None
+    stiffness: float = np.nan  # N
+    own: bool = False  # whether this is the study's EA
+
+
+def cases(study: Study) -> list[PlacedCase]:
+    """All curves of the study, and the fast ones of it with other EA.
+
+    Raises
+    ------
+    StudyError
+        If the study is not about the paper's muscle.
+    """
+    if MUSCLE not in study.muscles or study.muscles[MUSCLE].thread is None:
+        raise StudyError(f"muscles.{MUSCLE}: the claims are of this muscle, with threads")
+    own = study.muscles[MUSCLE].thread.stiffness
+    curves = [
+        case
+        for stiffness in sorted({own, *STIFFNESSES})
+        for case in _with_stiffness(study, stiffness, stiffness == own)
+    ]
+    cells = threads.of_claim(study) if threads.MUSCLES["silicone"] in study.muscles else []
+    return curves + [
+        PlacedCase(cell.case, cell.label, cell.tags, stiffness=own, own=True) for cell in cells
+    ]
+
+
+def _with_stiffness(study: Study, stiffness: float, own: bool) -> Iterator[PlacedCase]:
+    changed = study if own else _stiffened(study, stiffness)
+    for planned in plan(changed).cases.values():
+        for place in planned.places:
+            stress = bool(planned.case.fields_at)
+            swept = place.model in (GEOMETRIC, SWEPT_MODEL) or stress
+            if (own or swept) and (place.variant == "default" or stress):
+                yield PlacedCase(
+                    planned.case,
+                    f"{place}, EA {stiffness:g} N",
+                    place=place,
+                    muscle=changed.muscles[place.muscle],
+                    stiffness=stiffness,
+                    own=own,
+                )
+
+
+def _stiffened(study: Study, stiffness: float) -> Study:
+    """The study with threads of another stiffness, and without other states of the stress."""
+    muscles = {
+        name: replace(muscle, thread=Thread(stiffness=stiffness)) if muscle.thread else muscle
+        for name, muscle in study.muscles.items()
+    }
+    scenes = {
+        name: scene.model_copy(
+            update={"models": tuple(m for m in scene.models or () if _fast(scene, m))}
+        )
+        for name, scene in study.scenes.items()
+        if scene.path is not None
+    }
+    return replace(study, muscles=muscles, scenes={n: s for n, s in scenes.items() if s.models})
+
+
+def _fast(scene, model: str) -> bool:
+    return model in (GEOMETRIC, SWEPT_MODEL) or "stress" in scene.quantities
+
+
+def table(solved: Sequence[Solved]) -> pd.DataFrame:
+    """The scorecard."""
+    trees, own = {}, np.nan
+    for stiffness in sorted({s.asked.stiffness for s in solved}):
+        here = [s for s in solved if s.asked.stiffness == stiffness]
+        own = stiffness if here[0].asked.own else own
+        trees[stiffness] = tree(here)
+    return scorecard(trees, own)
+
+
+def tree(all_solved: Sequence[Solved]) -> xr.DataTree:
+    """The dataset of some cases, with the groups of the stress and of single threads."""
+    solved = [s for s in all_solved if s.asked.place]
+    cells = [s for s in all_solved if not s.asked.place]
+    muscles = {s.asked.place.muscle: s.asked.muscle for s in solved}
+    curves = [
+        Curve(s.asked.place, s.asked.case.key, s.asked.case, s.solution, s.asked.case.path.stops)
+        for s in solved
+    ]
+    found = dataset.build(curves, muscles)
+    states = [state for s in solved for state in _stresses(s)]
+    if states:
+        rows = pd.DataFrame(states).set_index(
+            ["muscle", "model", "variant", "pressure", "contraction"]
+        )
+        found["stress"] = xr.DataTree(rows.to_xarray())
+    if cells:
+        change = threads.change_by_wall(cells).rename_axis("wall").to_xarray()
+        found["threads"] = xr.DataTree(xr.Dataset({"change": change}))
+    return found
+
+
+def _stresses(solved: Solved) -> Iterator[dict[str, str | float]]:
+    """Summaries of the states that have a stress."""
+    asked, path = solved.asked, solved.asked.case.path
+    for number, fields in solved.solution.fields.items():
+        if "stress" in fields and solved.solution.state_status[number] is StateStatus.CONVERGED:
+            muscle = asked.case.muscle
+            numbers = summary(fields, muscle.inner_diameter, muscle.length)
+            yield {
+                "muscle": asked.place.muscle,
+                "model": asked.place.model,
+                "variant": asked.place.variant,
+                "pressure": path.held,
+                "contraction": path.stops[number],
+            } | dict(zip(SUMMARY, numbers, strict=True))
+
+
+def draw(solved: Sequence[Solved], table: pd.DataFrame) -> dict[str, "Figure"]:
+    """None: what there is to say stands in words."""
+    return {}

@@ -1,0 +1,182 @@
+"""C1, figure 4: force against contraction at constant pressures."""
+
+import numpy as np
+
+from workflow.analyses.claims.claim import (
+    GEOMETRIC,
+    MUSCLE,
+    PRESSURE,
+    STEPS,
+    Array,
+    Claim,
+    Data,
+    Finding,
+    Missing,
+    bend,
+    graded,
+    listed,
+    percents,
+    within,
+)
+from workflow.data import deviation
+from workflow.data.deviation import RELATIVE, SHARE
+from workflow.data.reference import ForceMap
+
+PRESSURES = (0.2, 0.3, 0.4)  # MPa
+MEAN = -0.099  # deviation of the paper's model from the manufacturer's map
+MAP = "festo_musclesim"
+
+
+def falls_and_rises(data: Data) -> Finding:
+    """C1a: the share of neighbouring states that are ordered as claimed."""
+    force = _forces(data, data.model)
+    along, across = np.diff(force, axis=1) < 0, np.diff(force, axis=0) > 0
+    share = float(np.mean(np.append(along, across)))
+    why = f"{100 * share:.0f} % of the steps in contraction and pressure go the claimed way"
+    return graded(share, [along.all(), across.all()], why)
+
+
+def nonlinear(data: Data) -> Finding:
+    """C1b: distance from a straight line against that of Eq. (1)."""
+    ours = min(bend(STEPS, force) for force in _forces(data, data.model))
+    equation = max(bend(STEPS, force) for force in _forces(data, GEOMETRIC))
+    why = (
+        f"curves leave their chord by at least {100 * ours:.1f} % of their range, "
+        f"those of Eq. (1) by {100 * equation:.1f} %"
+    )
+    return graded(ours, [ours > 0.05, ours > 2 * equation], why)
+
+
+def below_equation(data: Data) -> Finding:
+    """C1c: how far below Eq. (1), and where more so."""
+    return lacking(_forces(data, GEOMETRIC), _forces(data, data.model))
+
+
+def lacking(equation: Array, ours: Array) -> Finding:
+    """Whether forces, shape (curve, contraction), lie below Eq. (1), the more the further."""
+    lack = 1 - ours / equation
+    why = (
+        f"from 0 to 20 % contraction {listed(100 * lack.min(axis=0))} % of Eq. (1)'s force "
+        f"are missing at least"
+    )
+    parts = [bool((lack > 0).all()), bool((np.diff(lack, axis=1) > 0).all())]
+    return graded(float(lack[:, -1].mean()), parts, why)
+
+
+def mean_deviation(data: Data) -> Finding:
+    """C1d: mean deviation from the manufacturer's map."""
+    found = _deviations(data, data.model)[RELATIVE].dropna()
+    mean = float(found.mean())
+    why = (
+        f"mean of {len(found)} states; the thread stiffness, which the paper does not give, "
+        "was chosen to meet this number, so it is a fit and no test"
+    )
+    return within(mean, abs(mean - MEAN), 0.04, 0.1, why)
+
+
+def constant_deviation(data: Data) -> Finding:
+    """C1e: the range of the deviations."""
+    found = _deviations(data, data.model)[RELATIVE].dropna()
+    spread = float(np.ptp(found))
+    why = f"single states lie between {percents([found.min(), found.max()])}"
+    return within(spread, spread, 0.1, 0.25, why)
+
+
+def equation_by_contraction(data: Data) -> Finding:
+    """C1f: deviation of Eq. (1), as a share of the curve's largest force, along contraction."""
+    share = _equation(data)
+    why = (
+        "share of the curve's largest force from 0 to 20 %, mean of the pressures: "
+        f"{percents(share.mean(axis=0))}"
+    )
+    rising = np.diff(share, axis=1) > 0
+    return graded(float(share[:, -1].mean()), [rising.all(), rising.mean() > 0.5], why)
+
+
+def equation_by_pressure(data: Data) -> Finding:
+    """C1g: deviation of Eq. (1) along pressure, in newtons and as a share."""
+    share, found = _equation(data), _deviations(data, GEOMETRIC)
+    newton = (found["force"] - found["reference"]).to_numpy().reshape(share.shape)
+    rise = float(newton[-1].mean() - newton[0].mean())
+    why = (
+        f"from 0.2 to 0.4 MPa its mean goes from {newton[0].mean():.0f} to "
+        f"{newton[-1].mean():.0f} N, but from {percents(share[0].mean())} to "
+        f"{percents(share[-1].mean())} of the curve's largest force"
+    )
+    newtons = np.diff(newton.mean(axis=1)) > 0
+    return graded(rise, [newtons.all(), (np.diff(share.mean(axis=1)) > 0).all()], why)
+
+
+def _forces(data: Data, model: str) -> Array:
+    """Forces [N], shape (pressure, contraction)."""
+    return np.array([data.forces(pressure=p, model=model) for p in PRESSURES])
+
+
+def _equation(data: Data) -> Array:
+    """Deviation of Eq. (1) as a share of the curve's largest force, (pressure, contraction)."""
+    return _deviations(data, GEOMETRIC)[SHARE].to_numpy().reshape(len(PRESSURES), -1)
+
+
+def _deviations(data: Data, model: str):
+    """All states of the rule (workflow/data/deviation.py)."""
+    try:
+        points = data.tree["reference"].to_dataset()
+        points = points.isel(point=np.flatnonzero(points.source.values == MAP))
+        curves = data.tree["isobaric"].to_dataset()
+        curves = curves.sel(muscle=MUSCLE, model=model, variant="default", pressure=list(PRESSURES))
+    except KeyError:
+        raise Missing("the dataset has no such curves, or not the manufacturer's map") from None
+    used = points.isel(point=np.flatnonzero(points.suspect.values == 0))
+    columns = [used.pressure.values, used.contraction.values, used.force.values]
+    found = ForceMap(MAP, MAP, np.column_stack(columns), np.empty((0, 3)))
+    rows = deviation.states(found, curves.force, curves.status)
+    if rows[SHARE].isna().any():
+        raise Missing("a state is not converged or outside the manufacturer's map")
+    return rows
+
+
+CLAIMS = (
+    Claim(
+        "C1a",
+        "fig04",
+        "force falls with contraction and rises with pressure",
+        "1",
+        "always",
+        falls_and_rises,
+    ),
+    Claim("C1b", "fig04", "force against contraction is nonlinear", "1", "nonlinear", nonlinear),
+    Claim(
+        "C1c",
+        "fig04",
+        "force is below Eq. (1), the more so at high contraction",
+        "1",
+        "below",
+        below_equation,
+    ),
+    Claim(
+        "C1d",
+        "fig04",
+        "mean deviation from the manufacturer's map",
+        "1",
+        f"{MEAN:g}",
+        mean_deviation,
+    ),
+    Claim("C1e", "fig04", "that deviation is nearly constant", "1", "constant", constant_deviation),
+    Claim(
+        "C1f",
+        "fig04",
+        "the deviation of Eq. (1) grows with contraction",
+        "1",
+        "grows",
+        equation_by_contraction,
+    ),
+    Claim(
+        "C1g",
+        "fig04",
+        "the deviation of Eq. (1) grows with pressure",
+        "N",
+        "grows",
+        equation_by_pressure,
+    ),
+)
+assert PRESSURE in PRESSURES

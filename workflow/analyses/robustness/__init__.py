@@ -1,0 +1,1 @@
+"""Where the models end: hard muscles and loads."""

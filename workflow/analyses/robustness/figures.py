@@ -1,0 +1,168 @@
+"""Figures of the robustness study: where which status, and what the worst states look like."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
+
+from workflow.analyses.analysis import Solved
+from workflow.data import stress
+from workflow.figures import style
+
+STATUS: dict[str, dict[str, Any]] = {
+    "converged": {"color": "#0072b2", "marker": "o"},
+    "limit_point": {"color": "#e69f00", "marker": "^"},
+    "invalid_state": {"color": "#d55e00", "marker": "X"},
+    "stalled": {"color": "black", "marker": "x"},
+    "timeout": {"color": "black", "marker": "+"},
+    "solver_error": {"color": "black", "marker": "*"},
+    "mesh_failed": {"color": "black", "marker": "s"},
+}
+MESH_MARKS = {1: "o", 2: "s", 3: "D"}
+GOOD_DET, GOOD_MESH = 0.5, 1e-3  # what the named cases are held to
+WORST = 6
+
+
+def overview(table: pd.DataFrame) -> Figure:
+    """Named cases by smallest det F and mesh; the hypercube by status; its cost."""
+    named = table[(table["set"] == "named") & (table["model"] == "solid")]
+    cube = table[(table["set"] == "hypercube") & (table["model"] == "solid") & (table["mesh"] == 1)]
+    figure, places = style.grid(style.FULL, 7.4, 1, 2, gap=(0.75, 0.5), width_ratios=[1.2, 1])
+    figure.subplots_adjust(left=0.25, bottom=0.08)
+    left = places[0, 0].subgridspec(1, 2, wspace=0.12)
+    first = figure.add_subplot(left[0, 0])
+    second = figure.add_subplot(left[0, 1], sharey=first)
+    right = places[0, 1].subgridspec(3, 1, hspace=0.62)
+    _named_det(first, named)
+    _named_mesh(second, named)
+    _cube(figure.add_subplot(right[0, 0]), cube)
+    _cube_det(figure.add_subplot(right[1, 0]), cube)
+    _cube_effort(figure.add_subplot(right[2, 0]), cube)
+    return figure
+
+
+def _named_det(ax: Any, named: pd.DataFrame) -> None:
+    names = list(dict.fromkeys(named["name"]))
+    for mesh, rows in named.groupby("mesh"):
+        places = [names.index(name) for name in rows["name"]]
+        ax.plot(
+            rows["smallest det F"],
+            places,
+            linestyle="",
+            marker=MESH_MARKS[int(mesh)],
+            fillstyle="none" if mesh < 3 else "full",
+            color="black",
+            label=f"mesh {mesh:g}",
+        )
+    ax.axvline(GOOD_DET, color=style.SOFT, linewidth=0.8, linestyle=(0, (4, 2)))
+    ax.set(yticks=range(len(names)), yticklabels=names, xlim=(0, 1.02), xlabel="smallest det F")
+    ax.invert_yaxis()
+    ax.set_title("named cases, −5 to 25 %")
+    ax.legend(loc="center left", fontsize=7, handlelength=1, borderaxespad=0.1)
+    bad = named[named["status"] != "converged"]
+    for name, rows in bad.groupby("name"):
+        ax.text(0.02, names.index(name), rows["status"].iloc[0], fontsize=7, va="center")
+
+
+def _named_mesh(ax: Any, named: pd.DataFrame) -> None:
+    names = list(dict.fromkeys(named["name"]))
+    for mesh, rows in named[named["against"] != ""].groupby("mesh"):
+        places = [names.index(name) for name in rows["name"]]
+        ax.plot(
+            rows["difference"].clip(lower=1e-7),
+            places,
+            linestyle="",
+            marker=MESH_MARKS[int(mesh)],
+            fillstyle="none",
+            color="black",
+        )
+    ax.axvline(GOOD_MESH, color=style.SOFT, linewidth=0.8, linestyle=(0, (4, 2)))
+    ax.set(xscale="log", xlabel="difference of force\nfrom mesh 3 [of largest]")
+    ax.tick_params(labelleft=False)
+
+
+def _cube(ax: Any, cube: pd.DataFrame) -> None:
+    for status, rows in cube.groupby("status"):
+        ax.plot(
+            rows["thread strain"],
+            rows["pressure by modulus"],
+            linestyle="",
+            label=f"{status}: {len(rows)}",
+            fillstyle="none" if status == "converged" else "full",
+            **STATUS[str(status)],
+        )
+    ax.set(xscale="log", yscale="log", ylabel="p / (C10 + C01)")
+    ax.set_xlabel("p D² / (threads × EA), a thread strain")
+    ax.set_ylim(bottom=cube["pressure by modulus"].min() / 20)  # room for the legend
+    ax.set_title(f"hypercube, {len(cube)} muscles")
+    ax.legend(loc="lower left", fontsize=7, handlelength=1, borderaxespad=0.1)
+
+
+def _cube_det(ax: Any, cube: pd.DataFrame) -> None:
+    ax.hist(
+        [cube["smallest det F"].dropna(), cube["smallest det F at nodes"].dropna()],
+        bins=np.linspace(-0.5, 1, 31),
+        color=["#0072b2", "0.7"],
+        label=["at quadrature points", "at nodes"],
+    )
+    ax.axvline(0, color="black", linewidth=0.8)
+    ax.set(xlabel="smallest det F of a path", ylabel="muscles")
+    ax.legend(loc="upper left", fontsize=7, handlelength=1, borderaxespad=0.1)
+
+
+def _cube_effort(ax: Any, cube: pd.DataFrame) -> None:
+    ax.hist(cube["iterations per state"], bins=np.arange(0, 42, 1.5), color="#0072b2")
+    cut = int((cube["cutbacks"] > 0).sum())
+    ax.set(xlabel="Newton iterations per state", ylabel="muscles")
+    ax.set_title(f"{cut} of {len(cube)} needed a cutback", fontweight="normal")
+
+
+def worst(solved: Sequence[Solved], table: pd.DataFrame) -> Figure:
+    """The deformed walls, near the cap, of the cases with the smallest det F."""
+    by_record = {entry.asked.case.key: entry for entry in solved if entry.solution.fields}
+    rows = table[table["record"].isin(by_record)].nsmallest(WORST, "smallest det F at nodes")
+    figure, axes = style.panels(style.FULL, 6.6, 3, 2, gap=(0.45, 0.75))
+    for ax, (_, row) in zip(axes.flat, rows.iterrows(), strict=False):
+        _wall(ax, by_record[row["record"]], row)
+    figure.text(
+        0.01,
+        0.005,
+        "Last state near the cap. Colour: largest principal stress, red tension, blue compression, "
+        "each to its own largest.",
+        fontsize=7,
+        color=style.SOFT,
+    )
+    return figure
+
+
+def _wall(ax: Any, entry: Solved, row: pd.Series) -> None:
+    corners = stress.wall(next(iter(entry.solution.fields.values())))
+    muscle = entry.asked.case.muscle
+    mesh = Triangulation(
+        corners["z [mm]"],
+        corners["r [mm]"],
+        np.arange(len(corners)).reshape(-1, 3),
+    )
+    values = corners[stress.LARGEST].to_numpy()
+    limit = float(np.abs(values).max()) or 1.0
+    ax.tripcolor(
+        mesh, values, cmap="RdBu_r", vmin=-limit, vmax=limit, shading="gouraud", rasterized=True
+    )
+    ax.triplot(mesh, color="black", linewidth=0.3)
+    cap = corners["z [mm]"].max() - muscle.cap_length
+    near = 4 * muscle.wall_thickness
+    ax.set_xlim(cap - 2.5 * near, cap + muscle.cap_length + 0.5)
+    seen = corners[corners["z [mm]"] > cap - 2.5 * near]["r [mm]"]
+    ax.set_ylim(seen.min() - 1, seen.max() + 1)
+    ax.set_aspect("equal", adjustable="box", anchor="W")
+    ax.set_title(
+        f"{entry.asked.label}: {row['status']}, det F {row['smallest det F']:.2f}, "
+        f"at nodes {row['smallest det F at nodes']:.2f}",
+        fontsize=7,
+        fontweight="normal",
+    )
+    ax.grid(visible=False)
+    ax.set(xlabel="z [mm]", ylabel="r [mm]")

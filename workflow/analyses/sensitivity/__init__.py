@@ -1,0 +1,1 @@
+"""What of the settings the force depends on."""

@@ -1,0 +1,1 @@
+"""Records, what was measured, and what is made of both: dataset, tables of states, fields."""

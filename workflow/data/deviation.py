@@ -1,0 +1,177 @@
+"""How far computed curves are from the reference maps: ``results/tables/deviation.csv``.
+
+The rule, for every model, pressure and map: contractions of 0 to 20 % in steps of 5 % as far as the
+map goes, its suspect point dropped and its slack zeros left out (config/reference/SOURCES.md). Two
+measures, because near the free contraction the reference is a small force: (F - Fref) / |Fref|
+where Fref is more than a tenth of its curve's largest, and (F - Fref) / Fmax everywhere, Fmax the
+largest Fref of the curve. Between its points a map has to be interpolated; three other reasonable
+ways show how much a mean depends on that.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from solver.status import StateStatus
+from workflow.data import reference
+from workflow.data.reference import SMALL, ForceMap
+
+CONTRACTIONS = (0.0, 0.05, 0.1, 0.15, 0.2)
+DENSE = np.linspace(0, 0.2, 201)  # contractions among which a map has its largest force
+RULE = "pchip"  # the interpolation of the rule
+ALL = "all"  # in place of a pressure: the mean over all states of all pressures
+GOOD = StateStatus.CONVERGED.value
+RELATIVE, SHARE = "(F - Fref) / |Fref|", "(F - Fref) / Fmax"
+
+
+@dataclass(frozen=True, eq=False)
+class _Akima(ForceMap):
+    """Akima's splines in contraction instead of monotone cubics."""
+
+    def _curve(self, pressure: float) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+        from scipy.interpolate import Akima1DInterpolator
+
+        contraction, force = self._curve_points(pressure)
+        if contraction.size < 3:
+            return super()._curve(pressure)
+        return Akima1DInterpolator(contraction, force, method="makima", extrapolate=False)
+
+
+@dataclass(frozen=True, eq=False)
+class _Linear(ForceMap):
+    """Straight lines in contraction."""
+
+    def _curve(self, pressure: float) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+        contraction, force = self._curve_points(pressure)
+        return lambda values: np.interp(values, contraction, force, left=np.nan, right=np.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class _Surface(ForceMap):
+    """A smooth surface: the polynomial p^i e^j, i <= 1, j <= 4, that fits all points best.
+
+    Linear in pressure as Eq. (1) is. It evens out the errors of single points, and whatever of a
+    curve is no polynomial. Points of no pressure or of an extended muscle are not fitted.
+    """
+
+    def force(self, contraction: ArrayLike, pressure: float) -> NDArray[np.float64]:
+        """Force of the surface [N]; NaN where the map itself has none."""
+        contraction = np.asarray(contraction, dtype=float)
+        p, e, force = self.points[(self.points[:, 0] > 0) & (self.points[:, 1] >= 0)].T
+        found = np.linalg.lstsq(_terms(p, e), force, rcond=None)[0]
+        smooth = _terms(np.full(contraction.shape, pressure), contraction) @ found
+        return np.where(np.isfinite(super().force(contraction, pressure)), smooth, np.nan)
+
+
+def _terms(p: NDArray[np.float64], e: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.stack([p**i * e**j for i in range(2) for j in range(5)], axis=-1)
+
+
+INTERPOLATIONS: dict[str, type[ForceMap]] = {
+    RULE: ForceMap,
+    "linear": _Linear,
+    "akima": _Akima,
+    "surface": _Surface,
+}
+
+
+def interpolated(found: ForceMap, how: str) -> ForceMap:
+    """A map that is interpolated in another way."""
+    return INTERPOLATIONS[how](found.name, found.label, found.points, found.suspect)
+
+
+def states(found: ForceMap, force: xr.DataArray, status: xr.DataArray) -> pd.DataFrame:
+    """All states of the rule at the pressures of ``force``, dims pressure and contraction.
+
+    Columns: pressure, contraction, force, reference, both deviations; NaN where there is none, and
+    ``left_out`` says why.
+    """
+    frames = []
+    good = status.reindex(contraction=CONTRACTIONS, fill_value="") == GOOD
+    ours = force.reindex(contraction=CONTRACTIONS).where(good)
+    for pressure in force.pressure.values:
+        expected = found.force(CONTRACTIONS, float(pressure))
+        value = ours.sel(pressure=pressure).to_numpy()
+        largest = largest_force(found, float(pressure))
+        small = expected <= SMALL * largest
+        why = np.where(small, "small reference", "")
+        why = np.where(np.isfinite(value), why, "not solved")
+        why = np.where(np.isfinite(expected), why, "outside the map")
+        rows = {
+            "pressure": pressure,
+            "contraction": CONTRACTIONS,
+            "force": value,
+            "reference": expected,
+            RELATIVE: (value - expected) / np.where(small, np.nan, np.abs(expected)),
+            SHARE: (value - expected) / largest,
+            "left_out": why,
+        }
+        frames.append(pd.DataFrame(rows))
+    return pd.concat(frames, ignore_index=True)
+
+
+def largest_force(found: ForceMap, pressure: float) -> float:
+    """Largest force of a map at a pressure, contractions 0 to 20 %; NaN if it has none [N]."""
+    force = found.force(DENSE, pressure)
+    return float(np.nanmax(force)) if np.isfinite(force).any() else np.nan
+
+
+def summary(rows: pd.DataFrame) -> dict[str, float]:
+    """Means, largest (signed) deviations, and what was left out of some states."""
+    relative, share = rows[RELATIVE].dropna(), rows[SHARE].dropna()
+    return {
+        "mean_relative [1]": relative.mean(),
+        "largest_relative [1]": _largest(relative),
+        "states_relative": len(relative),
+        "mean_of_largest_force [1]": share.mean(),
+        "largest_of_largest_force [1]": _largest(share),
+        "mean_absolute_of_largest_force [1]": share.abs().mean(),
+        "states": len(share),
+        "left_out_outside_the_map": int((rows["left_out"] == "outside the map").sum()),
+        "left_out_small_reference": int((rows["left_out"] == "small reference").sum()),
+        "left_out_not_solved": int((rows["left_out"] == "not solved").sum()),
+    }
+
+
+def _largest(values: pd.Series) -> float:
+    return float(values.loc[values.abs().idxmax()]) if len(values) else np.nan
+
+
+def table(
+    tree: xr.DataTree, muscles: Iterable[str], maps: Mapping[str, ForceMap] | None = None
+) -> pd.DataFrame:
+    """Deviations of all isobaric curves of some muscles, at each pressure and over all of them."""
+    chosen = reference.load() if maps is None else maps
+    rows = [
+        curve | {"reference": name, "interpolation": how, "pressure [MPa]": pressure} | values
+        for curve, force, status in _curves(tree, muscles)
+        for name, found in chosen.items()
+        for how in INTERPOLATIONS
+        for pressure, values in _by_pressure(states(interpolated(found, how), force, status))
+    ]
+    return pd.DataFrame(rows)
+
+
+def _by_pressure(rows: pd.DataFrame) -> Iterator[tuple[float | str, dict[str, float]]]:
+    for pressure, found in rows.groupby("pressure"):
+        yield float(str(pressure)), summary(found)
+    yield ALL, summary(rows)
+
+
+def _curves(
+    tree: xr.DataTree, muscles: Iterable[str]
+) -> Iterator[tuple[dict[str, str], xr.DataArray, xr.DataArray]]:
+    """Force and status over pressure and contraction, of every muscle, model and variant."""
+    data = tree["isobaric"].to_dataset()
+    for muscle in muscles:
+        for model in data.model.values:
+            for variant in data.variant.values:
+                one = data.sel(muscle=muscle, model=model, variant=variant)
+                one = one.isel(pressure=np.flatnonzero(one.case.to_numpy() != ""))
+                if one.sizes["pressure"]:
+                    names = {"model": str(model), "muscle": muscle, "variant": str(variant)}
+                    yield names, one.force, one.status

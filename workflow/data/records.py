@@ -1,0 +1,87 @@
+"""Records of planned cases, read by name: a missing, foreign or damaged file is never data."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from solver import record
+from solver.case import Case
+from solver.record import Solution
+from workflow.plan.plan import Place, Plan
+from workflow.study.errors import StudyError
+
+FOLDER = Path("results/cases")
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A solved case at one of its places, and those of its stops that are wanted there."""
+
+    place: Place
+    key: str
+    case: Case
+    solution: Solution
+    stops: tuple[float, ...]
+
+
+def path_of(key: str, folder: Path = FOLDER) -> Path:
+    """The file of a case."""
+    return folder / f"{key}.h5"
+
+
+def curves_of_study(plan: Plan, folder: Path = FOLDER) -> list[Curve]:
+    """All curves of a study, with all their stops."""
+    solved = read(plan, plan.cases, folder)
+    return [
+        Curve(place, key, *solved[key], planned.case.path.stops)
+        for key, planned in plan.cases.items()
+        for place in planned.places
+    ]
+
+
+def curves_of_scene(plan: Plan, scene: str, folder: Path = FOLDER) -> list[Curve]:
+    """The curves of a scene, with the stops that it asks for (its cases may have more)."""
+    places = plan.scenes.get(scene, {})
+    solved = read(plan, places.values(), folder)
+    stops = plan.study.scenes[scene].swept if places else ()
+    return [Curve(place, key, *solved[key], stops) for place, key in places.items()]
+
+
+def read(
+    plan: Plan, keys: Iterable[str], folder: Path = FOLDER
+) -> dict[str, tuple[Case, Solution]]:
+    """Case and solution by key.
+
+    Raises
+    ------
+    StudyError
+        If a file is missing, damaged, or the record of another case.
+    """
+    return {key: read_one(key, plan.cases[key].label, folder) for key in dict.fromkeys(keys)}
+
+
+def read_one(key: str, label: str, folder: Path = FOLDER) -> tuple[Case, Solution]:
+    """Case and solution of a key; ``label`` is what messages call it. Raises as ``read``."""
+    path = path_of(key, folder)
+    if not path.exists():
+        raise StudyError(f"{path}: there is no record of {label}; run snakemake")
+    try:
+        case, solution = record.read(path)
+    except ValueError as error:
+        raise StudyError(
+            f"{path}: should hold {label} but is no record\n  {error}\n"
+            "  delete the file and run snakemake to solve the case again"
+        ) from None
+    if case.key != key:
+        raise StudyError(f"{path}: should hold {label} ({key}) but holds case {case.key}")
+    return case, solution
+
+
+def status(key: str, label: str) -> str:
+    """Status in the record of a case, or why there is none: ``not solved``, ``damaged``."""
+    if not path_of(key).exists():
+        return "not solved"
+    try:
+        return read_one(key, label)[1].status.value
+    except StudyError:
+        return "damaged"

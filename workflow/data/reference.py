@@ -1,0 +1,156 @@
+"""Force maps of the 20 mm muscle, the manufacturer's and a measured one.
+
+Sources: config/reference/SOURCES.md.
+
+Between its points a map is interpolated: by monotone cubics (PCHIP) in contraction at each
+tabulated pressure, then linearly in pressure. Nothing is extrapolated:
+outside its points a map is NaN.
+"""
+
+import csv
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+FOLDER = Path(__file__).parents[2] / "config" / "reference"
+NOMINAL_LENGTH = 300.0  # mm, of the muscle that was measured
+SMALL = 0.1  # share of a curve's largest force below which a relative deviation means nothing
+SAME = 1e-9  # two pressures [MPa] or contractions this close are one
+
+Points = NDArray[np.float64]  # (point, 3): pressure [MPa], contraction [1], force [N]
+
+
+@dataclass(frozen=True, eq=False)
+class ForceMap:
+    """Force against contraction and pressure.
+
+    Attributes
+    ----------
+    name : as in the dataset
+    label : as in figures
+    points : what is interpolated: pressure [MPa], contraction [1], force [N]
+    suspect : points of the source that are not used, same columns
+    """
+
+    name: str
+    label: str
+    points: Points
+    suspect: Points
+
+    @cached_property
+    def pressures(self) -> NDArray[np.float64]:
+        """Tabulated pressures, rising [MPa]."""
+        return np.unique(self.points[:, 0])
+
+    def contractions(self, pressure: float) -> NDArray[np.float64]:
+        """Contractions tabulated at a pressure, or at both tabulated pressures around it."""
+        below, above, _ = self._around(pressure)
+        if below is None:
+            return np.array([])
+        return np.intersect1d(self._curve_points(below)[0], self._curve_points(above)[0])
+
+    def force(self, contraction: ArrayLike, pressure: float) -> NDArray[np.float64]:
+        """Interpolated force [N]; NaN outside the map."""
+        contraction = np.asarray(contraction, dtype=float)
+        below, above, share = self._around(pressure)
+        if below is None:
+            return np.full(contraction.shape, np.nan)
+        return (1 - share) * self._curve(below)(contraction) + share * self._curve(above)(
+            contraction
+        )
+
+    def inside(self, contraction: ArrayLike, pressure: float) -> NDArray[np.bool_]:
+        """Which states the map says something of."""
+        return np.isfinite(self.force(contraction, pressure))
+
+    def _around(self, pressure: float) -> tuple[float | None, float | None, float]:
+        """The tabulated pressures below and above (one and the same on a tabulated one), share."""
+        near = np.abs(self.pressures - pressure) <= SAME
+        if near.any():
+            same = float(self.pressures[near][0])
+            return same, same, 0.0
+        place = int(np.searchsorted(self.pressures, pressure))
+        if place in (0, self.pressures.size):
+            return None, None, 0.0
+        below, above = map(float, self.pressures[place - 1 : place + 1])
+        return below, above, (pressure - below) / (above - below)
+
+    def _curve_points(self, pressure: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        points = self.points[self.points[:, 0] == pressure]
+        points = points[np.argsort(points[:, 1])]
+        return points[:, 1], points[:, 2]
+
+    def _curve(self, pressure: float) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+        """Force against contraction at a tabulated pressure; a single point is no curve."""
+        from scipy.interpolate import PchipInterpolator  # late: it takes a second to import
+
+        contraction, force = self._curve_points(pressure)
+        if contraction.size < 2:
+            return lambda values: np.where(
+                np.abs(values - contraction[0]) <= SAME, force[0], np.nan
+            )
+        return PchipInterpolator(contraction, force, extrapolate=False)
+
+
+def musclesim() -> ForceMap:
+    """The manufacturer's map; the point marked suspect is not used."""
+    rows = _rows("festo_musclesim_dmsp20.csv")
+    points = {
+        flag: [
+            (float(row["pressure_MPa"]), float(row["contraction"]), float(row["force_N"]))
+            for row in rows
+            if row["suspect"] == flag
+        ]
+        for flag in ("0", "1")
+    }
+    return ForceMap(
+        "festo_musclesim", "Festo MuscleSIM", _points(points["0"]), _points(points["1"])
+    )
+
+
+def martens2017() -> ForceMap:
+    """The measured map; a force of 0 means that the muscle was slack and is no force."""
+    rows = _rows("martens2017_dmsp20_300_measured.csv")
+    points = [
+        (
+            float(row["pressure_MPa"]),
+            round(1 - float(row["length_mm"]) / NOMINAL_LENGTH, 12),
+            float(row["force_N"]),
+        )
+        for row in rows
+        if float(row["force_N"]) != 0
+    ]
+    return ForceMap("martens2017", "Martens & Boblan 2017", _points(points), _points([]))
+
+
+def load() -> dict[str, ForceMap]:
+    """Both maps by name."""
+    return {found.name: found for found in (musclesim(), martens2017())}
+
+
+def relative_deviation(
+    found: ForceMap, contraction: ArrayLike, pressure: float, force: ArrayLike
+) -> NDArray[np.float64]:
+    """(F - Fref) / Fref along a curve of constant pressure.
+
+    NaN outside the map and where Fref is less than a tenth of its largest value on the curve, as a
+    ratio to a small force says nothing.
+    """
+    expected = found.force(contraction, pressure)
+    if not np.isfinite(expected).any():
+        return expected
+    meaningful = expected > SMALL * np.nanmax(np.abs(expected))
+    return (np.asarray(force, dtype=float) - expected) / np.where(meaningful, expected, np.nan)
+
+
+def _rows(file: str) -> list[dict[str, str]]:
+    with (FOLDER / file).open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def _points(rows: list[tuple[float, float, float]]) -> Points:
+    return np.array(rows, dtype=float).reshape(-1, 3)

@@ -1,0 +1,146 @@
+"""Tidy tables of a scene's states: one row per state, units in the column names."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from solver.load_path import HELD, SWEPT, Control
+from solver.record import VARIABLES
+from solver.status import StateStatus
+from workflow.data.reference import ForceMap
+from workflow.plan import mesh_error
+
+COLUMN = {name: f"{name} [{unit}]" for name, (unit, _) in VARIABLES.items()}
+CONTRACTION, PRESSURE, FORCE = COLUMN["contraction"], COLUMN["pressure"], COLUMN["force"]
+DIAMETER, WALL = "inner_diameter [mm]", "wall_thickness [mm]"
+ANGLE, THREADS = "braid_angle [deg]", "threads [1]"
+CONTROL = {
+    Control.CONTRACTION: CONTRACTION,
+    Control.PRESSURE: PRESSURE,
+    Control.FORCE: FORCE,
+}
+WITH_ERROR = {"force", "inner_diameter_inflated", "contraction"}  # quantities
+ZERO_FORCE = {"threshold_pressure", "free_contraction"}
+GOOD = StateStatus.CONVERGED.value
+SHOWN = (GOOD, StateStatus.UNSTABLE.value)  # statuses whose numbers may be shown
+REFERENCE = "reference"  # status of what was not computed
+NUMBER = "state"  # column: number of the state in its record
+SUSPECT = "suspect"  # status of a point that is shown but not used
+
+
+def error_of(column: str) -> str:
+    """Column with the discretisation error of another."""
+    name, bracket, unit = column.partition(" [")
+    return f"{name}_error{bracket}{unit}"
+
+
+def states(data: Any, quantities: Iterable[str]) -> pd.DataFrame:
+    """States of a scene at its own stops, a case may have more; in the order of the scene.
+
+    Columns: source (model), muscle, variant, point (stop or zero force), the two prescribed
+    controls with the exact numbers of the study, the quantities, the discretisation errors of some
+    of them, status.
+    """
+    frames = [of_curve(data.scene, quantities, *solved) for solved in data.solutions]
+    return pd.concat(frames, ignore_index=True).drop(columns=NUMBER)
+
+
+def of_curve(
+    scene: Any,
+    quantities: Iterable[str],
+    muscle: str,
+    model: str,
+    variant: str,
+    held: float,
+    case: Any,
+    solution: Any,
+) -> pd.DataFrame:
+    """The states of one curve, and their numbers in its record."""
+    path = case.path
+    wanted = [path.stops.index(stop) for stop in scene.swept if stop in path.stops]
+    points = ["stop"] * len(wanted)
+    if path.zero_force and ZERO_FORCE & set(scene.quantities):
+        wanted.append(len(path.stops))
+        points.append("zero force")
+    rows: dict[str, Any] = {"source": model, "muscle": muscle, "variant": variant, "point": points}
+    exact = np.array([*path.stops, np.nan])[wanted]
+    swept, zero = SWEPT[path.kind], np.array(points) == "zero force"
+    solved = solution.states[swept.name.lower()][wanted]
+    rows[CONTROL[HELD[path.kind]]] = held
+    rows[CONTROL[swept]] = np.where(zero, solved, exact)
+    status = [solution.state_status[number].value for number in wanted]
+    for name in quantities:
+        values = np.where(np.isin(status, SHOWN), solution.states[name][wanted], np.nan)
+        rows.setdefault(COLUMN[name], values)
+        if name in WITH_ERROR:
+            rows[error_of(COLUMN[name])] = mesh_error.error(case, solution, name)[wanted]
+    return pd.DataFrame(rows | {"status": status, NUMBER: wanted})
+
+
+def describe(table: pd.DataFrame, data: Any) -> pd.DataFrame:
+    """Adds what the muscles are made of."""
+    muscles = table["muscle"].map(data.muscles)
+    return table.assign(
+        **{
+            DIAMETER: muscles.map(lambda m: m.inner_diameter),
+            WALL: muscles.map(lambda m: m.wall_thickness),
+            ANGLE: muscles.map(lambda m: round(np.degrees(m.braid.angle), 10) if m.braid else 0.0),
+            THREADS: muscles.map(lambda m: m.braid.threads if m.braid else 0),
+            "material": table["muscle"].map(data.materials),
+        }
+    )
+
+
+def reference_curves(
+    maps: Iterable[ForceMap], pressures: Iterable[float], contractions: Iterable[float]
+) -> pd.DataFrame:
+    """The maps along contraction, one curve per pressure, with their own points among them."""
+    low, high = min(contractions), max(contractions)
+    frames = []
+    for found in maps:
+        for p in pressures:
+            own = [e for e in found.contractions(p) if low <= e <= high]
+            every = np.union1d(contractions, own)
+            frames.append(
+                _reference_rows(found, every, np.full(every.shape, p), np.isin(every, own))
+            )
+        left_out = found.suspect[np.isin(found.suspect[:, 0], pressures)]
+        if left_out.size:
+            rows = pd.DataFrame(left_out, columns=[PRESSURE, CONTRACTION, FORCE])
+            frames.append(rows.assign(source=found.name, point="tabulated", status=SUSPECT))
+    return pd.concat(frames, ignore_index=True)
+
+
+def reference_at(
+    maps: Iterable[ForceMap], contraction: float, pressures: Iterable[float]
+) -> pd.DataFrame:
+    """The maps along pressure at one contraction, with their tabulated pressures among them."""
+    low, high = min(pressures), max(pressures)
+    frames = []
+    for found in maps:
+        own = [p for p in found.pressures if low <= p <= high]
+        every = np.union1d(pressures, own)
+        frames.append(
+            _reference_rows(found, np.full(every.shape, contraction), every, np.isin(every, own))
+        )
+    return pd.concat(frames, ignore_index=True)
+
+
+def _reference_rows(
+    found: ForceMap, contraction: np.ndarray, pressure: np.ndarray, tabulated: np.ndarray
+) -> pd.DataFrame:
+    """Rows of one curve of a map, without those outside it."""
+    force = [float(found.force(e, p)) for e, p in zip(contraction, pressure, strict=True)]
+    rows = pd.DataFrame(
+        {
+            "source": found.name,
+            "point": np.where(tabulated, "tabulated", "interpolated"),
+            CONTRACTION: contraction,
+            PRESSURE: pressure,
+            FORCE: force,
+            "status": REFERENCE,
+        }
+    )
+    return rows.dropna(subset=[FORCE])

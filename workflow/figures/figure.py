@@ -1,0 +1,40 @@
+"""One figure: the numbers of its table, then the drawing of the table."""
+
+import importlib
+from pathlib import Path
+
+from geometry.files import aside
+from workflow.data.scene_data import SceneData
+from workflow.plan.plan import Plan
+from workflow.study.errors import StudyError, choices
+
+FOLDER = Path(__file__).parent
+
+
+def drawn(scene: str) -> bool:
+    """Whether there is a figure of this name; a scene without one is in the dataset only."""
+    return (FOLDER / f"{scene}.py").exists()
+
+
+def make(plan: Plan, scene: str, output: Path) -> None:
+    """Draw a scene as PNG and SVG and write its table as CSV, each whole or not at all.
+
+    Raises
+    ------
+    StudyError
+        If there is no such scene or figure, or a record is missing or damaged.
+    """
+    if scene not in plan.study.scenes:
+        raise StudyError(f"{scene}: no such scene; there are {choices(scene, plan.study.scenes)}")
+    if not drawn(scene):
+        raise StudyError(f"{scene}: no such figure; it would be workflow/figures/{scene}.py")
+    data = SceneData.read(plan, scene)
+    module = importlib.import_module(f"workflow.figures.{scene}")
+    from workflow.figures import style
+
+    table = module.table(data)
+    with aside(output.with_suffix(".csv")) as beside:
+        table.to_csv(beside, index=False)
+    figure = module.draw(table)
+    for suffix in (".svg", ".png"):
+        style.save(figure, output.with_suffix(suffix))

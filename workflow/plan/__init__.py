@@ -1,0 +1,1 @@
+"""Scenes become curves, curves become cases: which model, which mesh, and why."""

@@ -1,0 +1,138 @@
+"""What leaving out an effect changes and saves, as measured: ``weights.csv`` beside this module.
+
+Made by ``snakemake --cores 2 effects`` and ``python -m workflow weigh`` from the study of effects;
+committed, because a plan must not depend on what was solved before. Its first line says when and
+with which code; a test solves some of it again and says if it is out of date.
+"""
+
+import csv
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from datetime import date
+from functools import cache
+from math import nan
+from pathlib import Path
+from typing import Any
+
+from geometry.files import aside
+from geometry.meridian import MeridianMesh
+from geometry.section import SectionMesh
+
+MESHES: dict[str, dict[str, Any]] = {  # that were weighed: what differs from the default numerics
+    "coarser": {"section": SectionMesh(cap_step=2, growth=2, body_step=4)},
+    "default": {},
+    "finer": {"section": SectionMesh(refinement=2), "meridian": MeridianMesh(refinement=2)},
+}
+FILE = Path(__file__).with_suffix(".csv")
+NUMBERS = {  # that the dataset has: unit, long name
+    "force": ("1", "largest change of force, share of the largest"),
+    "contraction": ("1", "largest change of contraction under load, share of the largest"),
+    "diameter": ("1", "largest change of inner diameter, share of the largest"),
+    "threshold": ("1", "change of threshold pressure, share of it"),
+    "missing": ("1", "states that are lost without it"),
+    "unknowns_with": ("1", "unknowns with it"),
+    "unknowns_without": ("1", "unknowns without it"),
+    "seconds_with": ("s", "processor time of a curve with it"),
+    "seconds_without": ("s", "processor time of a curve without it"),
+}
+COSTS = Path("results/cost")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weight:
+    """Of one effect in one regime on one path; see workflow/analyses/effects/table.py.
+
+    Shares of the largest value along the path; NaN where a quantity says nothing there. Seconds are
+    those of the processor for a curve of the study, from start to record.
+    """
+
+    regime: str
+    path: str
+    effect: str
+    force: float
+    contraction: float
+    diameter: float
+    threshold: float
+    held: float  # MPa, 1 or N: what the path holds
+    largest: float  # N; under a load the contraction
+    missing: float  # states that are lost without it
+    unknowns_with: float
+    unknowns_without: float
+    seconds_with: float
+    seconds_without: float
+
+
+Weights = Mapping[tuple[str, str, str], Weight]  # by regime, path, effect
+
+
+@cache
+def load(file: Path = FILE) -> Weights:
+    """The measured weights."""
+    lines = file.read_text().splitlines()
+    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
+    found = [
+        Weight(
+            **{
+                f.name: row[f.name] if f.type is str else float(row[f.name] or nan)
+                for f in fields(Weight)
+            }
+        )
+        for row in rows
+    ]
+    return {(w.regime, w.path, w.effect): w for w in found}
+
+
+def origin(file: Path = FILE) -> str:
+    """When and with which code the weights were measured."""
+    return file.read_text().splitlines()[0].removeprefix("# ")
+
+
+def group() -> Any:
+    """The weights as a dataset (xarray) of dims regime, path, effect."""
+    import xarray as xr
+
+    known = load()
+    regimes, paths, effects = (list(dict.fromkeys(key[k] for key in known)) for k in range(3))
+    data = xr.Dataset(coords={"regime": regimes, "path": paths, "effect": effects})
+    for name, (unit, long_name) in NUMBERS.items():
+        values = [
+            [[getattr(known.get((r, p, e)), name, nan) for e in effects] for p in paths]
+            for r in regimes
+        ]
+        data[name] = (("regime", "path", "effect"), values, {"units": unit, "long_name": long_name})
+    data.attrs["origin"] = origin()
+    return data
+
+
+def measure(study: str, costs: Path = COSTS, file: Path = FILE) -> None:
+    """Write the weights of a solved study of effects, with the seconds that its cases took."""
+    from solver.record import code_digest
+    from workflow.analyses import analysis
+    from workflow.analyses.analysis import Solved
+    from workflow.analyses.effects import table
+    from workflow.data import records
+
+    solved = []
+    seconds: dict[tuple[str, str, str], float] = {}
+    for asked in analysis.cases("effects", study):
+        _, solution = records.read_one(asked.case.key, asked.label)
+        solved.append(Solved(asked, solution))
+        cost = json.loads((costs / f"{asked.case.key}.json").read_text())
+        tags = asked.tags
+        place = str(tags["regime"]), str(tags["path"]), str(tags["setup"])
+        seconds[place] = cost["python_cpu_seconds"] + cost.get("freefem_cpu_seconds", 0.0)
+    rows = table.table(solved).to_dict("records")
+    for row in rows:
+        for side in ("with", "without"):
+            spent = seconds[row["regime"], row["path"], row[side]]
+            row[f"seconds_{side}"] = float(f"{spent:.2g}")
+    names = [f.name for f in fields(Weight)]
+    with aside(file) as beside, beside.open("w", newline="") as stream:
+        stream.write(f"# study of effects of {date.today()}, code {code_digest()}\n")
+        writer = csv.DictWriter(stream, names, extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(
+            {n: "" if v != v else f"{v:g}" if isinstance(v, float) else v for n, v in row.items()}
+            for row in rows
+        )

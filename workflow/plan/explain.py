@@ -1,0 +1,94 @@
+"""What ``python -m workflow explain`` says of every scene: its wishes, what it gets, and why."""
+
+from collections.abc import Iterator
+from math import isnan
+
+from solver.case import Case
+from solver.effects import EFFECTS
+from workflow.plan import effect_costs, model_choice
+from workflow.plan.model_choice import Choice, Estimate
+from workflow.plan.plan import Place, Plan
+from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
+
+
+def lines(plan: Plan) -> Iterator[str]:
+    """The whole text, line by line."""
+    yield f"weights: {effect_costs.origin()}"
+    for name, places in plan.scenes.items():
+        scene = plan.study.scenes[name]
+        choice = model_choice.choose(plan.study, scene)
+        cases = {place.model: plan.cases[key].case for place, key in places.items()}
+        yield ""
+        yield f"{name}: {len(set(places.values()))} cases"
+        yield f"  wants    {_wish(scene, choice)}"
+        yield f"  regimes  {', '.join(choice.regimes)}"
+        yield from _models(scene, choice)
+        for model, case in cases.items():
+            yield from _effects(model, case, scene)
+        yield from _cases(plan, name, places)
+
+
+def _wish(scene: Scene, choice: Choice) -> str:
+    swept = scene.swept
+    usual = "contraction" if scene.path == "isotonic" else "force"
+    held = ", ".join(f"{value:g}" for value in scene.held)
+    given = "" if scene.tolerance else " (if not said otherwise)"
+    forced = "".join(f", {effect} {state}" for effect, state in sorted(scene.effects.items()))
+    return (
+        f"{', '.join(scene.quantities) or usual}; {scene.path}, {HELD_KEY[scene.path]} {held}, "
+        f"{SWEPT_KEY[scene.path]} {swept[0]:g} to {swept[-1]:g} in {_stops(len(swept))}; "
+        f"within {100 * choice.tolerance:g} %{given}{forced}"
+    )
+
+
+def _models(scene: Scene, choice: Choice) -> Iterator[str]:
+    """The ladder with expected errors and costs; what was taken is marked."""
+    chosen = choice.chosen.rung.name if choice.chosen else None
+    how = "cheapest that is exact enough" if chosen else "named by the scene"
+    if choice.chosen and not choice.chosen.error <= choice.tolerance:
+        how = "the best there is"
+    if {"stress", "deformed_shape"} & set(scene.quantities):
+        how += "; errors are those of the force, fields are not weighed"
+    yield f"  models   {how}"
+    for estimate in choice.estimates:
+        rung = estimate.rung
+        taken = rung.name == chosen or (chosen is None and rung.name in choice.models)
+        yield f"    {'>' if taken else ' '} {rung.name:15} {_estimate(estimate)}"
+
+
+def _estimate(estimate: Estimate) -> str:
+    if estimate.refused:
+        return estimate.refused
+    if isnan(estimate.error):
+        return "not weighed"
+    lost = "; some states are lost or not weighed" if estimate.missing else ""
+    return f"error {100 * estimate.error:.2g} %, {estimate.seconds:.2g} s a curve{lost}"
+
+
+def _effects(model: str, case: Case, scene: Scene) -> Iterator[str]:
+    """Which effects are on in a model, and why the others are off."""
+    on = case.active_effects
+    carried = [name for name, effect in EFFECTS.items() if model in effect.models]
+    off = [
+        f"{name} ({'by the scene' if name in scene.effects else 'by its switch'})"
+        for name in carried
+        if name not in on
+    ]
+    absent = [name for name in EFFECTS if name not in carried]
+    yield f"  {model:10}on: {', '.join(on) or 'none'}"
+    if off:
+        yield f"{'':11}off: {', '.join(off)}"
+    if absent:
+        yield f"{'':11}left out with the model: {', '.join(absent)}"
+
+
+def _cases(plan: Plan, name: str, places: dict[Place, str]) -> Iterator[str]:
+    for place, key in places.items():
+        case = plan.cases[key]
+        others = [scene for scene in case.scenes if scene != name]
+        stops = _stops(len(case.case.path.stops))
+        yield f"  {key}  {place}, {stops}" + (f"; also {', '.join(others)}" if others else "")
+
+
+def _stops(count: int) -> str:
+    return f"{count} stop{'s' * (count != 1)}"

@@ -1,0 +1,62 @@
+"""How large the forces of a scene are beside those of the curves that were weighed.
+
+An error is judged against the largest force of its own curve. A scene that begins at 10 % of
+contraction has smaller forces than a curve from 0, so the same error in newtons is a larger share.
+"""
+
+from solver import geometric
+from workflow.plan.effect_costs import Weights
+from workflow.study.schema import Scene
+from workflow.study.study import StudiedMuscle, Study
+
+EQ_1 = 2624.0  # N/MPa, of the muscles that were weighed, at their initial length
+WALL = 2 * 20  # mm2, thickness times diameter of the wall of the normal condition
+LEAST = 0.05  # share of Eq. (1) that a force is at least taken for
+EVERYTHING = "all but pressure on the net"
+
+
+def against(study: Study, scene: Scene, weights: Weights, regime: str) -> float:
+    """By how much more an error weighs in a scene than in the study of effects; 1 under a load.
+
+    Errors in newtons are taken to go with the size of Eq. (1) and, at constant pressure, with the
+    pressure; the largest force is Eq. (1) less what rubber and threads have taken from it in the
+    study.
+    """
+    weight = weights[regime, scene.path, EVERYTHING]
+    if scene.path == "isotonic":
+        return 1.0
+    found = []
+    for name in scene.muscles:
+        muscle = study.muscles[name]
+        for held in scene.held:
+            if scene.path == "isobaric":
+                contraction, pressure = min(scene.swept, key=abs), held
+                loads = held / weight.held
+            else:
+                contraction, pressure, loads = held, max(scene.swept), 1.0
+            error = weight.largest * loads * _size(muscle)
+            found.append(
+                error / _force(muscle, pressure, contraction, weight.force * weight.largest)
+            )
+    return max(found)
+
+
+def _size(muscle: StudiedMuscle) -> float:
+    """Of Eq. (1), as a multiple of the muscles that were weighed; 1 for a bare tube."""
+    return _eq_1(muscle, 1.0, 0.0) / EQ_1 if muscle.thread else 1.0
+
+
+def _eq_1(muscle: StudiedMuscle, pressure: float, contraction: float) -> float:
+    return abs(float(geometric.force(muscle.muscle, pressure, contraction)))
+
+
+def _force(muscle: StudiedMuscle, pressure: float, contraction: float, taken: float) -> float:
+    """About the largest force [N]: of what is ``taken`` by 15 % of contraction, 0.4 are at 0."""
+    if not muscle.thread or not pressure:
+        return EQ_1 * max(pressure, 0.1)
+    ideal = _eq_1(muscle, pressure, contraction)
+    wall = muscle.muscle.wall_thickness * muscle.muscle.inner_diameter / WALL
+    if muscle.rubber.shear_modulus < 0.2:
+        wall /= 1.5  # weighed at 3 mm
+    share = 0.4 + 0.6 * min(abs(contraction) / 0.15, 1.0)
+    return max(ideal - share * taken * wall, LEAST * ideal)

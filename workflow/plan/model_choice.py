@@ -1,0 +1,275 @@
+"""Which model, effects and mesh a scene gets: the cheapest that is exact enough for it.
+
+Pure: no files but the measured weights and errors (weights.csv, discretisation.csv) are read, and
+nothing is solved. The models form a ladder; going down it leaves out one effect after the other,
+and the error of a step is what leaving that effect out has changed in the study of effects, in the
+regimes that the scene touches. A scene that names its ``models`` gets those; its ``effects`` hold
+for it all the same.
+
+The mesh alone may take a quarter of the tolerance (mesh_error.csv), so the mesh is the coarsest
+that does; the default meshes are those for the default tolerance.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from math import inf, isnan
+
+from solver.effects import EFFECTS, KINDS, READ_BY, Effects, active
+from solver.numerics import Numerics
+from solver.refusal import UnsolvableCase
+from workflow.plan import magnitude
+from workflow.plan.effect_costs import MESHES, Weight, Weights, load
+from workflow.plan.mesh_error import share_of
+from workflow.study.schema import QUANTITIES, Scene
+from workflow.study.study import Study, Variant
+
+TOLERANCE = 0.01  # share of the curve's largest value, where a scene names none
+SHORTEST = 20 / 300  # diameter / length of the muscles that were weighed: caps act in proportion
+CAPS = ("end_caps", "cap_geometry")
+OF_MESH = 0.25  # share of the tolerance that the mesh may take
+ORDER = 3  # a mesh twice as fine leaves a third of the difference, or less (second order)
+
+
+@dataclass(frozen=True)
+class Rung:
+    """A model on a mesh; ``step`` is what it leaves out of ``above``, as the weights call it."""
+
+    name: str
+    model: str
+    mesh: str
+    above: str | None
+    step: str
+
+
+LADDER = {  # cheapest first
+    rung.name: rung
+    for rung in (
+        Rung("geometric", "geometric", "default", "cylinder", "all but pressure on the net"),
+        Rung("cylinder", "cylinder", "default", "membrane", "end_caps"),
+        Rung("membrane", "membrane", "default", "solid", "cap_geometry"),
+        Rung("solid, coarser", "solid", "coarser", "solid, finer", "coarse mesh of solid"),
+        Rung("solid", "solid", "default", "solid, finer", "mesh of solid"),
+        Rung("solid, finer", "solid", "finer", None, "mesh of solid"),
+    )
+}
+# Off the ladder, whose models all smear the threads: it has no caps, and is dear.
+OF_CELL = Rung("cell", "cell", "default", "membrane", "end_caps")
+DISCRETE = "discrete_threads"
+SMEARED = "isobaric", DISCRETE  # path and effect: weighed at constant pressure only
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What a rung would give a scene."""
+
+    rung: Rung
+    error: float  # expected, share of the largest value; NaN if never measured
+    mesh_error: float  # what of it is the mesh's, as the study of accuracy has found; NaN if not
+    seconds: float  # of one curve of the study of effects
+    missing: bool  # whether it loses states somewhere in these regimes
+    refused: str = ""  # why it cannot serve, whatever the error
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What a scene gets.
+
+    Attributes
+    ----------
+    models : names, one if chosen
+    variants : by the label they have in the dataset
+    chosen : None where the scene names its models
+    """
+
+    models: tuple[str, ...]
+    variants: dict[str, Variant]
+    regimes: tuple[str, ...]
+    tolerance: float
+    estimates: tuple[Estimate, ...]
+    chosen: Estimate | None
+
+
+def choose(study: Study, scene: Scene, weights: Weights | None = None) -> Choice:
+    """The models and variants of a scene with a path."""
+    weights = load() if weights is None else weights
+    touched = tuple(regimes(study, scene))
+    tolerance = TOLERANCE if scene.tolerance is None else scene.tolerance
+    estimates = tuple(
+        _estimate(study, scene, rung, touched, weights) for rung in (*LADDER.values(), OF_CELL)
+    )
+    chosen = None
+    if scene.models is None:
+        able = [e for e in estimates if not e.refused]
+        good = [e for e in able if not e.missing and is_enough(e, tolerance)]
+        best = sorted(able, key=lambda e: (e.missing, isnan(e.error), e.error))
+        chosen = (good or best or [None])[0]
+    models = scene.models or ((chosen.rung.model,) if chosen else ())
+    variants = {
+        label: made
+        for name in scene.variants
+        for label, made in [_variant(study.variants[name], name, scene, chosen)]
+    }
+    return Choice(models, variants, touched, tolerance, estimates, chosen)
+
+
+def is_enough(estimate: Estimate, tolerance: float) -> bool:
+    """Whether a rung is exact enough, and its mesh fine enough."""
+    return estimate.error <= tolerance and estimate.mesh_error <= OF_MESH * tolerance
+
+
+def switched(effects: Effects, wanted: Mapping[str, str]) -> Effects:
+    """Some effects with others of the vocabulary forced on or off, as far as switches do that."""
+    moves = {}
+    for name, state in wanted.items():
+        effect = EFFECTS[name]
+        is_off = getattr(effects, effect.switch) in effect.off
+        if state == "off" and not is_off:
+            moves[effect.switch] = effect.off[0]
+        if state == "on" and is_off:
+            moves[effect.switch] = next(v for v in KINDS[effect.switch] if v not in effect.off)
+    return replace(effects, **moves)
+
+
+def readable(model: str, effects: Effects) -> Effects:
+    """The same effects with the switches that a model does not read as they are by default."""
+    own = {f.name: getattr(effects, f.name) for f in fields(Effects) if model in READ_BY[f.name]}
+    return Effects(**own)
+
+
+def regimes(study: Study, scene: Scene) -> Iterator[str]:
+    """The regimes of the study of effects that a scene touches."""
+    found = [study.muscles[name] for name in scene.muscles]
+    soft = [m.rubber.shear_modulus < 0.2 for m in found]
+    stiff = [m.thread is not None and m.thread.stiffness > 2000 for m in found]
+    if not all(s or t for s, t in zip(soft, stiff, strict=True)):
+        yield "normal"
+    if any(soft):
+        yield "thick silicone"
+    if any(stiff):
+        yield "stiff threads"
+    lowest = min(scene.held) if scene.path == "isobaric" else max(scene.swept)
+    if lowest < 0.15:
+        yield "low pressure"
+    shortest = {
+        "isobaric": max(scene.swept) > 0.15,
+        "isometric": scene.path == "isometric" and max(scene.held) > 0.15,
+        "isotonic": scene.path == "isotonic" and min(scene.held) < 100,
+    }[scene.path]
+    if shortest:
+        yield "high contraction"
+
+
+def _estimate(
+    study: Study, scene: Scene, rung: Rung, touched: tuple[str, ...], weights: Weights
+) -> Estimate:
+    refused = refusal(rung.model, scene)
+    if rung.model == "geometric" and any(study.muscles[m].thread is None for m in scene.muscles):
+        refused = refused or "needs a braid"
+    if rung is OF_CELL and scene.effects.get(DISCRETE) != "on":
+        refused = refused or f"only where {DISCRETE} is on"
+    errors, seconds, missing = [], [], False
+    for regime in touched:
+        error, lost = _error(study, scene, rung, regime, weights)
+        errors.append(error)
+        missing |= lost
+        if rung is OF_CELL:
+            seconds.append(weights[(regime, *SMEARED)].seconds_with)
+            continue
+        last = weights[regime, scene.path, rung.step]
+        seconds.append(last.seconds_without if rung.above else last.seconds_with)
+    mesh_error = share_of(rung.model, Effects(), replace(Numerics(), **MESHES[rung.mesh]))
+    return Estimate(rung, max(errors), mesh_error, max(seconds), missing, refused)
+
+
+def _error(
+    study: Study, scene: Scene, rung: Rung, regime: str, weights: Weights
+) -> tuple[float, bool]:
+    """Expected error of a rung: the sum of the steps down to it; and whether states are lost."""
+    size = magnitude.against(study, scene, weights, regime)
+    total = _of_smearing(study, scene, weights, regime, size) if rung is not OF_CELL else 0.0
+    missing = False
+    at: Rung | None = rung
+    while at is not None:
+        weight = weights[regime, scene.path, at.step]
+        change = _change(study, scene, weight, size)
+        if at.above is None:
+            total += change / ORDER
+        else:
+            total += change
+        missing |= at.above is not None and weight.missing > 0
+        at = LADDER[at.above] if at.above else None
+    return total, missing
+
+
+def _of_smearing(study: Study, scene: Scene, weights: Weights, regime: str, size: float) -> float:
+    """What smeared threads change; of a contraction the same share as of the force."""
+    if not any(study.muscles[name].thread for name in scene.muscles):
+        return 0.0
+    weight = weights[(regime, *SMEARED)]
+    return _change(study, scene, replace(weight, contraction=weight.force), size)
+
+
+def _change(study: Study, scene: Scene, weight: Weight, size: float) -> float:
+    """What leaving out an effect changes in a scene; ``size`` as of workflow/plan/magnitude.py."""
+    if weight.effect in scene.effects:  # forced on or off: no error
+        return 0.0
+    change = max(
+        (
+            value * (size if name == "force" else 1)
+            for name in _judged(scene)
+            if not isnan(value := getattr(weight, name))
+        ),
+        default=inf,
+    )
+    if weight.effect in CAPS:
+        change *= max(_stoutness(study, name) for name in scene.muscles)
+    return change
+
+
+def _judged(scene: Scene) -> list[str]:
+    """Columns of the weights that tell the error of what a scene wants."""
+    names = ["contraction" if scene.path == "isotonic" else "force"]
+    if {"inner_diameter", "outer_diameter", "volume"} & set(scene.quantities):
+        names.append("diameter")
+    if "threshold_pressure" in scene.quantities:
+        names.append("threshold")
+    return names
+
+
+def _stoutness(study: Study, muscle: str) -> float:
+    """Diameter to length, as a multiple of that of the muscles that were weighed."""
+    made = study.muscles[muscle].muscle
+    return made.inner_diameter / made.length / SHORTEST
+
+
+def refusal(model: str, scene: Scene) -> str:
+    """Why a model cannot give what a scene wants; empty if it can."""
+    for quantity in scene.quantities:
+        if model not in QUANTITIES[quantity]:
+            return f"gives no {quantity}"
+    try:
+        effects = readable(model, switched(Effects(), scene.effects))
+    except UnsolvableCase as error:
+        return str(error)
+    before = set(active(model, Effects(), braided=True))
+    now = set(active(model, effects, braided=True))
+    for name, state in scene.effects.items():
+        if (name in now) != (state == "on"):
+            return f"carries no {name}" if state == "on" else f"cannot leave out {name}"
+    lost = before - now - set(scene.effects)
+    if lost:
+        return f"would leave out {', '.join(sorted(lost))} too"
+    return ""
+
+
+def _variant(
+    variant: Variant, name: str, scene: Scene, chosen: Estimate | None
+) -> tuple[str, Variant]:
+    """A variant with what scene and planner add to it, and its label in the dataset."""
+    label, effects, numerics = name, switched(variant.effects, scene.effects), variant.numerics
+    if scene.effects:
+        label += "".join(f"_{effect}_{state}" for effect, state in sorted(scene.effects.items()))
+    if chosen is not None and chosen.rung.mesh != "default":
+        label += f"_{chosen.rung.mesh}"
+        numerics = replace(numerics, **MESHES[chosen.rung.mesh])
+    return label, Variant(effects=effects, numerics=numerics)

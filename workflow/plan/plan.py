@@ -1,0 +1,234 @@
+"""From a study to its cases: pure, no file is read or written.
+
+A scene asks for curves. Curves of equal content (muscle, materials, model, effects, numerics, path
+and held value) are one case, with the stops of all scenes that ask for it; so every state is
+solved once, however many figures show it.
+"""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from geometry import section
+from geometry.muscle import Muscle
+from solver.case import MESHED, Case, digest
+from solver.load_path import LoadPath
+from workflow.plan import model_choice
+from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
+from workflow.study.study import Study, Variant
+
+FIELDS = {"stress", "deformed_shape"}
+ZERO_FORCE = {"threshold_pressure", "free_contraction"}
+SUFFIX = {"membrane": "mesh", "solid": "msh", "cell": "mesh"}  # of the mesh file, by model
+
+
+@dataclass(frozen=True, order=True)
+class Place:
+    """Where a curve stands in the dataset."""
+
+    group: str
+    muscle: str
+    model: str
+    variant: str
+    held: float
+
+    def __str__(self) -> str:
+        """As in messages: ``dmsp20 solid isobaric 0.3 MPa``."""
+        held = {
+            "isobaric": f"{self.held:g} MPa",
+            "isometric": f"{100 * self.held:g} %",
+            "isotonic": f"{self.held:g} N",
+        }[self.group]
+        variant = "" if self.variant == "default" else f" {self.variant}"
+        return f"{self.muscle} {self.model}{variant} {self.group} {held}"
+
+
+def mesh_file(case: Case) -> str | None:
+    """File name of the mesh of a case, None for a model without."""
+    spec = case.mesh_spec()
+    suffix = "msh" if MESHED.get(case.model) == "section" else "mesh"
+    return f"{digest(spec)}.{suffix}" if spec else None
+
+
+@dataclass(frozen=True)
+class PlannedCase:
+    """A case, the places that it fills and the scenes that ask for it; both sorted."""
+
+    case: Case
+    places: tuple[Place, ...]
+    scenes: tuple[str, ...]
+
+    @property
+    def label(self) -> str:
+        """What a user calls this case."""
+        others = len(self.places) - 1
+        return f"{self.places[0]}{f' (and {others} more)' if others else ''}"
+
+    @property
+    def mesh(self) -> str | None:
+        """File name of the mesh, None for a model without."""
+        return mesh_file(self.case)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What there is to do.
+
+    Attributes
+    ----------
+    cases : by key, sorted by place
+    meshes : specification by file name
+    scenes : of every scene that has cases, the key of the case at each of its places
+    shown : specification of the whole muscles that scenes without cases show, by name
+    """
+
+    study: Study
+    cases: dict[str, PlannedCase]
+    meshes: dict[str, str]
+    scenes: dict[str, dict[Place, str]]
+    shown: dict[str, str]
+
+    def digest(self, scene: str | None = None) -> str:
+        """Digest of all that a scene (None: the dataset) takes from the study but its cases."""
+        names = self.scenes if scene is None else [scene]
+        places = sorted({entry for name in names for entry in self.scenes.get(name, {}).items()})
+        muscles = {place.muscle for place, _ in places}
+        asked = None if scene is None else self.study.scenes[scene]
+        muscles.update(asked.muscles if asked else ())
+        made_of = [(name, self.study.muscles[name]) for name in sorted(muscles)]
+        return digest(repr((places, made_of, asked)))
+
+
+@dataclass
+class _Wish:
+    """What scenes want of one curve."""
+
+    case: Case
+    stops: set[float] = field(default_factory=set)
+    fields_at: set[float] = field(default_factory=set)
+    zero_force: bool = False
+    places: set[Place] = field(default_factory=set)
+    scenes: set[str] = field(default_factory=set)
+
+    def add(self, scene: str, place: Place, case: Case) -> None:
+        self.stops.update(case.path.stops)
+        self.fields_at.update(case.fields_at)
+        self.zero_force |= case.path.zero_force
+        self.places.add(place)
+        self.scenes.add(scene)
+
+    def planned(self) -> PlannedCase:
+        path = replace(self.case.path, stops=tuple(sorted(self.stops)), zero_force=self.zero_force)
+        case = replace(self.case, path=path, fields_at=tuple(sorted(self.fields_at)))
+        return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)))
+
+
+def plan(study: Study) -> Plan:
+    """The cases of a study.
+
+    Raises
+    ------
+    StudyError
+        If a scene asks for a case that cannot be solved.
+    """
+    wishes: dict[str, _Wish] = {}
+    places: dict[str, dict[Place, str]] = {}
+    for name, scene in study.scenes.items():
+        for place, case in _curves(study, name, scene):
+            curve = _identity(case)
+            wishes.setdefault(curve, _Wish(case)).add(name, place, case)
+            places.setdefault(name, {})[place] = curve
+    planned = {curve: wish.planned() for curve, wish in wishes.items()}
+    ordered = sorted(planned.values(), key=lambda entry: entry.places)
+    return Plan(
+        study=study,
+        cases={entry.case.key: entry for entry in ordered},
+        meshes={entry.mesh: entry.case.mesh_spec() for entry in ordered if entry.mesh},
+        scenes={
+            name: {place: planned[curve].case.key for place, curve in sorted(found.items())}
+            for name, found in places.items()
+        },
+        shown={
+            name: _whole(study.muscles[name].muscle)
+            for scene in study.scenes.values()
+            if scene.path is None
+            for name in scene.muscles
+        },
+    )
+
+
+def _whole(muscle: Muscle) -> str:
+    """Specification of a muscle in three dimensions, for ``python -m geometry``."""
+    return json.dumps({"kind": "whole", "muscle": muscle.as_dict()}, sort_keys=True)
+
+
+def _curves(study: Study, name: str, scene: Scene) -> Iterator[tuple[Place, Case]]:
+    """What one scene asks for."""
+    if scene.path is None:
+        return
+    choice = model_choice.choose(study, scene)
+    _check_models(study, name, scene, choice)
+    for muscle in scene.muscles:
+        for model in choice.models:
+            for label, variant in choice.variants.items():
+                for held in scene.held:
+                    place = Place(scene.path, muscle, model, label, held)
+                    yield place, _case(study, name, scene, place, variant)
+
+
+def _check_models(study: Study, name: str, scene: Scene, choice: model_choice.Choice) -> None:
+    """Refuse effects that a named model, or every model, cannot have."""
+    found = {e.rung.model: e.refused for e in choice.estimates}
+    if choice.models:
+        found = {model: model_choice.refusal(model, scene) for model in choice.models}
+    reasons = [f"{model} {reason}" for model, reason in found.items() if reason]
+    if reasons:
+        key = "effects" if scene.effects else "quantities"
+        allowed = f"what one model can have; here {'; '.join(reasons)}"
+        raise study.source.refuse(("scenes", name, key), getattr(scene, key), allowed)
+
+
+def _case(study: Study, name: str, scene: Scene, place: Place, variant: Variant) -> Case:
+    """The case that a scene asks for at a place."""
+    muscle, effects = study.muscles[place.muscle], variant.effects
+    if scene.effects:
+        effects = model_choice.readable(place.model, effects)
+    keys, checked = ("scenes", name), study.source.checked
+    # Eq. (1) has its zero of force at no pressure but 0, so no threshold
+    has_zero = place.model != "geometric" or place.group == "isobaric"
+    path = checked(
+        keys,
+        LoadPath,
+        {
+            "kind": scene.path,
+            "held": place.held,
+            "stops": scene.swept,
+            "zero_force": has_zero and bool(ZERO_FORCE.intersection(scene.quantities)),
+        },
+        {"held": HELD_KEY[scene.path], "stops": SWEPT_KEY[scene.path]},
+    )
+    case = checked(
+        keys,
+        Case,
+        {
+            "muscle": muscle.muscle,
+            "rubber": muscle.rubber,
+            "thread": muscle.thread,
+            "path": path,
+            "model": place.model,
+            "effects": effects,
+            "numerics": variant.numerics,
+            "fields_at": scene.swept if FIELDS.intersection(scene.quantities) else (),
+        },
+        {"model": "models"},
+    )
+    if place.model == "solid":
+        mesh = {"mesh": variant.numerics.section, "end": variant.effects.end}
+        checked(("muscles", place.muscle), section.stations, {"muscle": muscle.muscle, **mesh})
+    return case
+
+
+def _identity(case: Case) -> str:
+    """What a case has in common with all that can be merged with it."""
+    path = LoadPath(kind=case.path.kind, held=case.path.held, stops=(0.0,))
+    return replace(case, path=path, fields_at=()).canonical()

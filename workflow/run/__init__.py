@@ -1,0 +1,1 @@
+"""What goes on around the jobs of a run: lock, progress, failures."""

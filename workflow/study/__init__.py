@@ -1,0 +1,1 @@
+"""The study file: text with line numbers, schema, checks, units, sweeps."""

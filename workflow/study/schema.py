@@ -1,0 +1,242 @@
+"""The closed schema of a study file: which keys there are, of which kind, and what they mean.
+
+What a value means for the mechanics, and its range, is refused where it is used (geometry/,
+solver/); here stands what a file may contain. config/README.md describes every key.
+"""
+
+import re
+from dataclasses import fields
+from typing import Annotated, Any, get_origin
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model
+from pydantic_core import PydanticCustomError
+
+from geometry.refusal import is_count
+from solver.case import MESHED, MODELS
+from solver.effects import EFFECTS, READ_BY, Effects
+from solver.load_path import PathKind
+from solver.numerics import KINDS
+from workflow.study.errors import choices, shown
+from workflow.study.values import expand
+
+BUILT = tuple(model for model in MODELS if model != "geometric")
+NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}")
+NAME_RULE = "letters, digits, _ . and -, at most 64, not beginning with . or -"
+QUANTITIES = {
+    # models that can give it; those from stress on are solved for or written only when asked for
+    "force": MODELS,
+    "contraction": MODELS,
+    "inner_diameter": MODELS,
+    "outer_diameter": BUILT,
+    "thread_stretch": BUILT,
+    "volume": tuple(MESHED),
+    "stiffness": tuple(MESHED),
+    "twist": READ_BY["twist"],
+    "stress": ("solid", "cell"),
+    "deformed_shape": ("membrane", "solid", "cell"),
+    "threshold_pressure": MODELS,  # of zero force, on an isometric path
+    "free_contraction": MODELS,  # of zero force, on an isobaric path
+}
+MOST_THREADS = 10_000  # more is a typing error
+HELD_KEY = {"isobaric": "pressure", "isometric": "contraction", "isotonic": "load"}
+SWEPT_KEY = {"isobaric": "contraction", "isometric": "pressure", "isotonic": "pressure"}
+
+
+def refusal(allowed: str) -> PydanticCustomError:
+    """An error whose message says what would have been accepted."""
+    return PydanticCustomError("refused", "{allowed}", {"allowed": allowed})
+
+
+def _name(value: str) -> str:
+    if not NAME.fullmatch(value):
+        raise refusal(NAME_RULE)
+    return value
+
+
+def _values(value: object) -> tuple[float, ...]:
+    try:
+        return expand(value)
+    except ValueError as error:
+        raise refusal(str(error)) from None
+
+
+def _one_of(*allowed: str) -> Any:
+    """One name out of ``allowed``."""
+
+    def check(value: object) -> object:
+        if value not in allowed:
+            raise refusal(choices(value, allowed))
+        return value
+
+    return Annotated[str, BeforeValidator(check)]
+
+
+def _some_of(*allowed: str) -> Any:
+    """A list of names out of ``allowed``, each once; their order means nothing."""
+
+    def check(value: object) -> tuple[str, ...]:
+        names = _each_once(value)
+        for name in names:
+            if name not in allowed:
+                raise refusal(f"{choices(name, allowed)}; not {shown(name)}")
+        return tuple(name for name in allowed if name in names)
+
+    return Annotated[tuple[str, ...], BeforeValidator(check)]
+
+
+def _each_once(value: object) -> list[str]:
+    if not isinstance(value, list) or not value or not all(isinstance(v, str) for v in value):
+        raise refusal("a list of at least one name")
+    twice = next((v for v in value if value.count(v) > 1), None)
+    if twice is not None:
+        raise refusal(f"every name once; {shown(twice)} is there twice")
+    return value
+
+
+def _sorted_names(value: object) -> tuple[str, ...]:
+    return tuple(sorted(_each_once(value)))
+
+
+def _tuple_of(kind: Any) -> Any:
+    """A tuple, which a file writes as a list."""
+    return Annotated[kind, BeforeValidator(lambda v: tuple(v) if isinstance(v, list) else v)]
+
+
+def _threads(value: object) -> object:
+    if value != "none" and not (is_count(value) and value <= MOST_THREADS):
+        raise refusal(f"an integer >= 1, <= {MOST_THREADS} (per layer), or none for a bare tube")
+    return value
+
+
+Name = Annotated[str, AfterValidator(_name)]
+Names = Annotated[tuple[Name, ...], BeforeValidator(_sorted_names)]
+Values = Annotated[tuple[float, ...], BeforeValidator(_values)]
+
+
+class Entry(BaseModel):
+    """A mapping of the file: no unknown keys, no silent conversions, no NaN."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+class MaterialEntry(Entry):
+    """A rubber."""
+
+    c10: float
+    c01: float
+    kappa: float = 1000.0
+
+
+class MuscleEntry(Entry):
+    """A muscle, or what of it differs from its ``base``."""
+
+    base: Name | None = None
+    inner_diameter: float | None = None
+    wall_thickness: float | None = None
+    length: float | None = None
+    cap_length: float | None = None
+    layer_depths: _tuple_of(tuple[float, float]) | None = None
+    threads: Annotated[Any, BeforeValidator(_threads)] = None
+    lead: float | None = None
+    angle: float | None = None
+    angle_of: Name | None = None
+    thread_stiffness: float | None = None
+    material: Name | None = None
+
+
+EffectsEntry = create_model(
+    "EffectsEntry",
+    __base__=Entry,
+    **{f.name: (_one_of(*f.type), f.default) for f in fields(Effects)},
+)
+
+
+def _overrides(name: str, kind: Any) -> type[Entry]:
+    """A schema with the fields of a dataclass, all of which may be left out."""
+    types = {
+        f.name: _tuple_of(f.type) if get_origin(f.type) is tuple else f.type for f in fields(kind)
+    }
+    return create_model(
+        f"{name}_entry", __base__=Entry, **{key: (kind | None, None) for key, kind in types.items()}
+    )
+
+
+NumericsEntry = create_model(
+    "NumericsEntry",
+    __base__=Entry,
+    **{name: (_overrides(name, kind) | None, None) for name, kind in KINDS.items()},
+)
+
+
+class VariantEntry(Entry):
+    """A set of effects and numerics."""
+
+    effects: EffectsEntry = EffectsEntry()
+    numerics: NumericsEntry = NumericsEntry()
+
+
+class LimitsEntry(Entry):
+    """What a case may use."""
+
+    wall_time: Annotated[int, Field(gt=0, le=10**7)] = 600  # s
+    memory: Annotated[int, Field(gt=0, le=10**7)] = 2000  # MB
+
+
+class Scene(Entry):
+    """The cases of one figure; without a path it has none and shows the muscles themselves."""
+
+    muscles: Names
+    path: _one_of(*PathKind) | None = None
+    pressure: Values | None = None  # MPa
+    contraction: Values | None = None  # fraction
+    load: Values | None = None  # N
+    models: _some_of(*MODELS) | None = None
+    variants: Names = ("default",)
+    effects: dict[_one_of(*EFFECTS), _one_of("on", "off")] = {}
+    tolerance: Annotated[float, Field(gt=0, lt=1)] | None = None  # share of the largest value
+    quantities: _some_of(*QUANTITIES) = ()
+
+    @property
+    def held(self) -> tuple[float, ...]:
+        """Values of the factor that is held, one curve each."""
+        return getattr(self, HELD_KEY[self.path])
+
+    @property
+    def swept(self) -> tuple[float, ...]:
+        """Stops along each curve."""
+        return getattr(self, SWEPT_KEY[self.path])
+
+
+Range = _tuple_of(tuple[float, float])
+
+
+class BoundsEntry(Entry):
+    """Between which values a calibration may go."""
+
+    thread_stiffness: Range = (10.0, 10000.0)  # N
+    c10: Range = (0.01, 2.0)  # MPa
+    c01: Range = (0.001, 1.0)  # MPa
+
+
+class CalibrationEntry(Entry):
+    """A fit of a muscle to measured forces."""
+
+    muscle: Name
+    reference: str = "festo_musclesim"
+    model: _one_of("membrane", "solid") = "membrane"
+    fit: _some_of("thread_stiffness", "c10", "c01") = ("thread_stiffness",)
+    bounds: BoundsEntry = BoundsEntry()
+    fit_pressure: Values = (0.3,)  # MPa
+    report_pressure: Values = (0.2, 0.4, 0.6)  # MPa
+
+
+class StudyFile(Entry):
+    """The whole file."""
+
+    materials: dict[Name, MaterialEntry]
+    muscles: dict[Name, MuscleEntry]
+    variants: dict[Name, VariantEntry] = {}
+    numerics: NumericsEntry = NumericsEntry()
+    limits: LimitsEntry = LimitsEntry()
+    scenes: dict[Name, Scene]
+    calibration: dict[Name, CalibrationEntry] = {}
