@@ -40,7 +40,6 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--dataset", type=Path, default=DATASET)
     entry.add_argument("--failures", type=Path, default=FAILURES)
     entry.add_argument("--deviation", type=Path, help="table of deviations from the force maps")
-    entry.add_argument("--compared", nargs="*", default=[], help="muscles that the maps are of")
     entry = add(_figure, "Draw the figure of a scene and write its numbers.")
     entry.add_argument("--scene", required=True)
     entry.add_argument("--output", type=Path, required=True, help=".png; .svg and .csv beside it")
@@ -91,7 +90,7 @@ def _plan(given: argparse.Namespace):
 def _gather(given: argparse.Namespace) -> int:
     from geometry.files import aside
     from workflow.analyses import dataset_groups
-    from workflow.data import dataset, deviation, records
+    from workflow.data import dataset, deviation, records, reference
     from workflow.run import failures
 
     plan = _plan(given)
@@ -102,7 +101,8 @@ def _gather(given: argparse.Namespace) -> int:
         dataset.write(tree, given.dataset)
     failures.write(plan, {curve.key: curve.solution for curve in curves}, given.failures)
     if given.deviation:
-        rows = deviation.table(tree, given.compared)
+        named = {name: muscle.reference for name, muscle in plan.study.muscles.items()}
+        rows = deviation.table(tree, reference.of_muscles(named))
         with aside(given.deviation) as beside:
             rows.to_csv(beside, index=False, float_format="%.6g")
     return 0

@@ -21,6 +21,7 @@ muscles:
     lead: 144
     thread_stiffness: 315
     material: nbr
+    reference: [festo_musclesim, martens2017]
   bare: {base: one, threads: none}
 variants:
   paper: {effects: {end: butt, threads: two_way}}

@@ -15,7 +15,7 @@ Layout, version 2
     Along muscle: what the muscle is made of. Coordinates are the decimals of the study file.
 /effects     dims regime, path, effect: what leaving out an effect changes and costs, as measured by
              the study of effects (workflow/plan/effect_costs.py); only in results/dataset.nc
-/reference   dim point: the force maps that figures compare with
+/reference   dim point: the force maps that are of muscles of the study
 /robustness, /threads   dim row: the tables of these studies, where they were asked for
 
 A state that is invalid_state keeps its numbers: look at status before you believe one.
@@ -36,6 +36,7 @@ from solver.case import MODELS
 from solver.record import VARIABLES, Solution
 from workflow.data import reference
 from workflow.data.records import Curve
+from workflow.data.reference import ForceMap
 from workflow.plan import mesh_error
 from workflow.plan.effect_costs import group as weights_group
 from workflow.study.schema import HELD_KEY, SWEPT_KEY
@@ -81,7 +82,9 @@ def build(
 
     With ``effects`` also what is known of leaving effects out.
     """
-    groups = {"reference": _reference(), **(others or {})}
+    groups = {**(others or {})}
+    if named := {muscle.reference for muscle in muscles.values()} - {()}:
+        groups["reference"] = _reference(reference.load(sorted(set().union(*named))))
     if effects:
         groups["effects"] = weights_group()
     for name in HELD_KEY:
@@ -215,9 +218,9 @@ def _words(solution: Solution, state: int) -> dict[str, str]:
     }
 
 
-def _reference() -> xr.Dataset:
-    """Both force maps as points."""
-    maps = reference.load().values()
+def _reference(found: Mapping[str, ForceMap]) -> xr.Dataset:
+    """Force maps as points."""
+    maps = found.values()
     points = np.concatenate([np.concatenate([m.points, m.suspect]) for m in maps])
     sources = [m.name for m in maps for _ in range(len(m.points) + len(m.suspect))]
     suspect = [s for m in maps for s in [0] * len(m.points) + [1] * len(m.suspect)]

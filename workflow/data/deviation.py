@@ -17,7 +17,6 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from solver.status import StateStatus
-from workflow.data import reference
 from workflow.data.reference import SMALL, ForceMap
 
 CONTRACTIONS = (0.0, 0.05, 0.1, 0.15, 0.2)
@@ -141,15 +140,15 @@ def _largest(values: pd.Series) -> float:
     return float(values.loc[values.abs().idxmax()]) if len(values) else np.nan
 
 
-def table(
-    tree: xr.DataTree, muscles: Iterable[str], maps: Mapping[str, ForceMap] | None = None
-) -> pd.DataFrame:
-    """Deviations of all isobaric curves of some muscles, at each pressure and over all of them."""
-    chosen = reference.load() if maps is None else maps
+def table(tree: xr.DataTree, maps: Mapping[str, Mapping[str, ForceMap]]) -> pd.DataFrame:
+    """Deviations of all isobaric curves of the muscles that have ``maps`` of their own.
+
+    At each pressure and over all of them.
+    """
     rows = [
         curve | {"reference": name, "interpolation": how, "pressure [MPa]": pressure} | values
-        for curve, force, status in _curves(tree, muscles)
-        for name, found in chosen.items()
+        for curve, force, status in _curves(tree, maps)
+        for name, found in maps[curve["muscle"]].items()
         for how in INTERPOLATIONS
         for pressure, values in _by_pressure(states(interpolated(found, how), force, status))
     ]
@@ -167,7 +166,7 @@ def _curves(
 ) -> Iterator[tuple[dict[str, str], xr.DataArray, xr.DataArray]]:
     """Force and status over pressure and contraction, of every muscle, model and variant."""
     data = tree["isobaric"].to_dataset()
-    for muscle in muscles:
+    for muscle in sorted(set(muscles) & set(data.muscle.values)):
         for model in data.model.values:
             for variant in data.variant.values:
                 one = data.sel(muscle=muscle, model=model, variant=variant)

@@ -1,6 +1,7 @@
-"""Force maps of the 20 mm muscle, the manufacturer's and a measured one.
+"""Force maps of real muscles, the manufacturer's and a measured one of DMSP-20-300.
 
-Sources: config/reference/SOURCES.md.
+Sources: config/reference/SOURCES.md. A muscle of a study is compared with those that are its own,
+which its key ``reference`` names.
 
 Between its points a map is interpolated: by monotone cubics (PCHIP) in contraction at each
 tabulated pressure, then linearly in pressure. Nothing is extrapolated:
@@ -8,13 +9,15 @@ outside its points a map is NaN.
 """
 
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from workflow.study.schema import FORCE_MAPS
 
 FOLDER = Path(__file__).parents[2] / "config" / "reference"
 NOMINAL_LENGTH = 300.0  # mm, of the muscle that was measured
@@ -127,9 +130,20 @@ def martens2017() -> ForceMap:
     return ForceMap("martens2017", "Martens & Boblan 2017", _points(points), _points([]))
 
 
-def load() -> dict[str, ForceMap]:
-    """Both maps by name."""
-    return {found.name: found for found in (musclesim(), martens2017())}
+# How each is read, when it is asked for.
+MAPS: dict[str, Callable[[], ForceMap]] = dict(
+    zip(FORCE_MAPS, (musclesim, martens2017), strict=True)
+)
+
+
+def load(names: Iterable[str] = FORCE_MAPS) -> dict[str, ForceMap]:
+    """Maps by name; all there are, if none is named."""
+    return {name: MAPS[name]() for name in names}
+
+
+def of_muscles(names: Mapping[str, Iterable[str]]) -> dict[str, dict[str, ForceMap]]:
+    """The maps of every muscle that has some, by the names of its own."""
+    return {muscle: load(own) for muscle, own in names.items() if own}
 
 
 def relative_deviation(

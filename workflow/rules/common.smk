@@ -139,14 +139,10 @@ def figure_sources(wildcards):
 
 
 def deviations():
-    """The table of deviations, where the study has the scene that is compared."""
-    return ["results/tables/deviation.csv"] if "fig04" in PLAN.scenes else []
-
-
-def compared():
-    """What gather is told of that table."""
-    muscles = PLAN.study.scenes["fig04"].muscles if deviations() else ()
-    return ["--deviation", *deviations(), "--compared", *muscles] if muscles else []
+    """The table of deviations, where a force map is of a muscle with isobaric curves."""
+    isobaric = {p.muscle for s in PLAN.scenes.values() for p in s if p.group == "isobaric"}
+    measured = any(PLAN.study.muscles[muscle].reference for muscle in isobaric)
+    return ["results/tables/deviation.csv"] if measured else []
 
 
 def measured_files():

@@ -3,7 +3,7 @@
 #   in   all records of the study; the reference maps
 #   out  results/dataset.nc             layout: workflow/data/dataset.py
 #        results/tables/failures.csv    what did not work out; often a header only
-#        results/tables/deviation.csv   from the maps, of the muscles of fig04, which these are of
+#        results/tables/deviation.csv   from the maps, of the muscles that these are of
 #        results/complete.txt           if no case failed; else the run ends with an error here
 
 
@@ -27,13 +27,13 @@ rule gather:
     params:
         study=STUDY,
         plan=PLAN.digest(),
-        compared=compared(),
+        deviation=["--deviation", *deviations()] if deviations() else [],
     message:
         "Gathering the records of all cases"
     shell:
         "python -m workflow gather --study {params.study:q}"
         " --dataset {output.dataset:q} --failures {output.failures:q}"
-        " {params.compared:q} 2> {log:q}"
+        " {params.deviation:q} 2> {log:q}"
 
 
 rule complete:

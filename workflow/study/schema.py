@@ -37,6 +37,7 @@ QUANTITIES = {
     "threshold_pressure": MODELS,  # of zero force, on an isometric path
     "free_contraction": MODELS,  # of zero force, on an isobaric path
 }
+FORCE_MAPS = ("festo_musclesim", "martens2017")  # read by workflow/data/reference.py
 MOST_THREADS = 10_000  # more is a typing error
 HELD_KEY = {"isobaric": "pressure", "isometric": "contraction", "isotonic": "load"}
 SWEPT_KEY = {"isobaric": "contraction", "isometric": "pressure", "isotonic": "pressure"}
@@ -142,6 +143,7 @@ class MuscleEntry(Entry):
     angle_of: Name | None = None
     thread_stiffness: float | None = None
     material: Name | None = None
+    reference: _some_of(*FORCE_MAPS) | None = None
 
 
 EffectsEntry = create_model(

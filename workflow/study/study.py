@@ -34,6 +34,8 @@ SHAPE_KEYS = ("inner_diameter", "wall_thickness", "length", "cap_length")
 EA = "thread_stiffness"
 BRAID_KEYS = ("layer_depths", "lead", "angle", "angle_of", EA)
 ANGLE_KEYS = ("lead", "angle", "angle_of")  # exactly one of them
+# What may change while a muscle stays the one that was measured: nobody has measured these.
+NOT_MEASURED = (EA, "thread_diameter", "thread_strength", "reference")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +46,7 @@ class StudiedMuscle:
     material: str
     rubber: MooneyRivlin
     thread: Thread | None
+    reference: tuple[str, ...] = ()  # names of the force maps that are of this muscle
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,6 +131,9 @@ class _Muscles:
                 inherited = {k: v for k, v in inherited.items() if k not in ANGLE_KEYS}
             if own.get("threads") == "none":
                 inherited = {k: v for k, v in inherited.items() if k not in BRAID_KEYS}
+            measured = {k: v for k, v in own.items() if k not in NOT_MEASURED}
+            if any(value != inherited.get(key) for key, value in measured.items()):
+                inherited.pop("reference", None)  # the maps are of the other muscle
             self._complete[name] = inherited | own
         return self._complete[name]
 
@@ -148,6 +154,7 @@ class _Muscles:
                 thread=None
                 if bare
                 else checked(keys, Thread, {"stiffness": values[EA]}, {"stiffness": EA}),
+                reference=values.get("reference", ()),
             )
         return self._built[name]
 

@@ -16,7 +16,7 @@ from workflow.plan.plan import Place
 from workflow.run import failures
 from workflow.study.errors import StudyError
 
-from ..synthetic import planned, value, write_records
+from ..synthetic import STUDY, planned, value, write_records
 
 
 @pytest.fixture(scope="module")
@@ -147,6 +147,14 @@ def test_what_is_said_of_a_state_stands_beside_its_status(study):
     assert group.flags.values.tolist() == ["", "overstrained smoothed"]
     assert group.note.values.tolist() == ["", "of the second"]
     assert group.threshold_pressure_note == "of zero force"
+
+
+def test_maps_that_are_of_no_muscle_of_the_study_are_not_in_its_dataset(tmp_path):
+    text = STUDY.replace("    reference: [festo_musclesim, martens2017]\n", "")
+    found = planned(tmp_path, text)
+    write_records(found, tmp_path / "cases")
+    curves = records.curves_of_study(found, tmp_path / "cases")
+    assert "reference" not in dataset.build(curves, found.study.muscles)
 
 
 def test_reference_has_both_maps(tree):

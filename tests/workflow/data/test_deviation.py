@@ -36,7 +36,7 @@ def tree(share=0.0, shift=0.0, status="converged"):
 
 
 def rows(found, **maps):
-    table = deviation.table(found, ["one"], maps or {"line": MAP})
+    table = deviation.table(found, {"one": maps or {"line": MAP}})
     return table[table["interpolation"] == "pchip"].set_index("pressure [MPa]")
 
 
@@ -79,6 +79,11 @@ def test_interpolations_agree_at_the_points_and_differ_between_them():
         assert np.isnan(found.force([0.1], 0.7)).all()
     for a, b in ((a, b) for a in forces for b in forces if a < b):
         assert 1 < np.abs(forces[a] - forces[b]).max() < 60, (a, b)
+
+
+def test_a_muscle_without_maps_is_compared_with_none():
+    assert deviation.table(tree(), {}).empty
+    assert deviation.table(tree(), {"another": {"line": MAP}}).empty
 
 
 def test_states_hold_both_measures():

@@ -287,3 +287,43 @@ def test_readme_has_the_defaults_of_numerics():
     }
     assert {key: value for key, value in rows.items() if key not in with_size} == shown
     assert all("mm" in rows[key] for key in with_size)  # which tests/verification/test_scaling has
+
+
+MEASURED = changed(
+    "    material: nbr\n", "    material: nbr\n    reference: [martens2017, festo_musclesim]\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("derived", "keeps"),
+    [
+        ("thread_stiffness: 400", True),  # not measured: a calibration changes it
+        ("length: 300", True),  # as it was
+        ("length: 280", False),
+        ("wall_thickness: 1.5", False),
+        ("threads: 48", False),
+        ("angle: 20", False),
+        ("threads: none", False),
+        ("length: 280, reference: [martens2017]", True),  # the user says so
+    ],
+)
+def test_maps_are_of_the_muscle_that_was_measured(derived, keeps, tmp_path):
+    text = MEASURED.replace("  wide:", f"  other: {{base: one, {derived}}}\n  wide:")
+    muscles = load(study_file(tmp_path, text)).muscles
+    assert muscles["one"].reference == ("festo_musclesim", "martens2017")
+    assert bool(muscles["other"].reference) is keeps
+    assert muscles["wide"].reference == ()
+
+
+def test_another_rubber_is_another_muscle(tmp_path):
+    text = MEASURED.replace("muscles:", "  soft: {c10: 0.028, c01: 0.018}\nmuscles:", 1)
+    text = text.replace("  wide:", "  other: {base: one, material: soft}\n  wide:")
+    assert load(study_file(tmp_path, text)).muscles["other"].reference == ()
+
+
+def test_an_unknown_map_is_refused_by_name(tmp_path):
+    text = MEASURED.replace("martens2017, ", "martens2071, ")
+    message = refusal(tmp_path, text)
+    assert "muscles.one.reference" in message
+    assert "martens2071" in message
+    assert "martens2017" in message

@@ -162,7 +162,8 @@ def _normal(study: Study) -> Iterator[StudyCase]:
             numerics=setting.numerics,
         )
         label = f"{setting.model} {setting.name}".strip()
-        yield StudyCase(curve, f"{label}, {setting.set}", setting.tags("curve"))
+        tags = setting.tags("curve") | {"maps": " ".join(ours.reference)}
+        yield StudyCase(curve, f"{label}, {setting.set}", tags)
         if setting.set == "mesh" and setting.model not in ("geometric", "cell"):
             case = replace(curve, path=threshold)
             yield StudyCase(case, f"{label}, threshold", setting.tags("threshold"))

@@ -14,6 +14,7 @@ from workflow.figures import style
 from workflow.figures.style import SOFT, SOURCES
 
 ERROR = "total_error [1]"
+RELATIVE = "festo_musclesim_relative [1]"
 PAPER = 27 * 60.0, 0.099  # s, share: the paper's solve, its deviation from the manufacturer's map
 BOUND = 0.0025  # discretisation error that the default meshes are held to
 DEFAULT = "1/1"
@@ -155,8 +156,12 @@ def _label_seconds(ax: Any, rows: pd.DataFrame) -> None:
 def _maps(ax: Any, rows: pd.DataFrame) -> None:
     """How far the fullest model itself is from what was measured, whatever the mesh."""
     fullest = rows[rows["model"] == "solid"].sort_values("refinement").iloc[-1]
-    found = {name: abs(fullest[f"{name}_share [1]"]) for name in ("martens2017", "festo_musclesim")}
-    above = max(found.values())
+    found = {
+        name: abs(fullest[f"{name}_share [1]"])
+        for name in ("martens2017", "festo_musclesim")
+        if f"{name}_share [1]" in rows
+    }
+    above = max(found.values(), default=0.0)
     for row, (name, value) in enumerate(found.items()):
         look = SOURCES[name]
         ax.axhline(value, BESIDE, color=look["color"], linewidth=0.9, linestyle=":")
@@ -202,10 +207,13 @@ def _small_print(known: pd.DataFrame) -> str:
     laws = growth(known)
     text = (
         "0.3 MPa, 0 to 20 %. The error is the largest difference from what the fullest model "
-        "(solid) converges to, discretisation and modelling together. Dotted: mean difference of "
-        "that model from force maps, as a share of their largest force; the paper's is relative, "
-        f"{_relative(known)} for ours. "
+        "(solid) converges to, discretisation and modelling together. "
     )
+    if RELATIVE in known:
+        text += (
+            "Dotted: mean difference of that model from force maps, as a share of their largest "
+            f"force; the paper's is relative, {_relative(known)} for ours. "
+        )
     for model in ("membrane", "solid"):
         own = laws[laws["model"] == model].set_index(["quantity", "against"])["exponent [1]"]
         if own.size:
@@ -221,7 +229,7 @@ def _small_print(known: pd.DataFrame) -> str:
 def _relative(known: pd.DataFrame) -> str:
     """Mean relative deviation of the default solid from the manufacturer's map."""
     ours = known[(known["set"] == "mesh") & (known["model"] == "solid")]
-    value = ours.loc[ours["mesh"] == DEFAULT, "festo_musclesim_relative [1]"].iloc[0]
+    value = ours.loc[ours["mesh"] == DEFAULT, RELATIVE].iloc[0]
     return f"{100 * value:.1f} %".replace("-", "−")
 
 

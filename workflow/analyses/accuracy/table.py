@@ -51,7 +51,9 @@ def rows(solved: Iterable[Solved]) -> pd.DataFrame:
     _against_maps(table)
     finest = table.groupby(["set", "model", "mesh"])["refinement"].transform("max")
     other_of_pair = (table["set"] == "scenes") & (table["refinement"] == finest)
-    return table[~other_of_pair].drop(columns=["_solution", "_case"]).reset_index(drop=True)
+    return (
+        table[~other_of_pair].drop(columns=["_solution", "_case", "_maps"]).reset_index(drop=True)
+    )
 
 
 def _row(one: Solved) -> dict[str, Any]:
@@ -73,6 +75,7 @@ def _row(one: Solved) -> dict[str, Any]:
         },
         "_solution": solution,
         "_case": case,
+        "_maps": tags.get("maps", ""),
     }
 
 
@@ -212,11 +215,10 @@ def _against_fullest(table: pd.DataFrame) -> None:
 
 
 def _against_maps(table: pd.DataFrame) -> None:
-    """Mean deviation from both maps, by the rule of workflow/data/deviation.py, at one pressure."""
-    maps = reference.load()
+    """Mean deviation from the muscle's maps by workflow/data/deviation.py, at one pressure."""
     for index, row in table[table["set"] == "mesh"].iterrows():
         solution = row["_solution"]
-        for name, found in maps.items():
+        for name, found in reference.load(row["_maps"].split()).items():
             summary = deviation.summary(deviation.states(found, *_labelled(solution)))
             table.loc[index, f"{name}_relative [1]"] = summary["mean_relative [1]"]
             table.loc[index, f"{name}_share [1]"] = summary["mean_of_largest_force [1]"]

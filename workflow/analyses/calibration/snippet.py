@@ -9,6 +9,8 @@ def text(result: Calibration, study: Study) -> str:
     values = result.values
     base = study.muscles[result.entry.muscle]
     own = f"base: {result.entry.muscle}"
+    if base.reference:
+        own += f", reference: [{', '.join(base.reference)}]"
     if "thread_stiffness" in values:
         own += f", thread_stiffness: {values['thread_stiffness']:g}"
     lines = [
