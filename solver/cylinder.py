@@ -5,6 +5,7 @@ for the unknowns (radius, axial stretch, twist; those that the case has) from th
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from solver.record import Solution, unreached
 from solver.status import CaseStatus, case_status, state_status
 
 Array = NDArray[np.float64]
+SHARP = 1e-3  # width of slackening, as a share, that counts as none
 SMALLEST_STEP = 1 / 1024  # share of the way to a waypoint
 LONGEST_STEP = 0.25  # of any unknown; they have no unit
 
@@ -160,11 +162,34 @@ def _record(cylinder: Cylinder, states: dict[str, Array], stop: int, at: Array) 
         "margin": min(state.lz, state.r / cylinder.inner),
         "stiffness": _force_slope(cylinder, at, Control.CONTRACTION),
     }
+    values["smoothing"], values["smoothing_rate"] = _smoothing(cylinder, at)
     if muscle.braid is not None:
         stretch = cylinder.thread_stretch(state)
         values |= {"thread_stretch_min": stretch.min(), "thread_stretch_max": stretch.max()}
     for name, value in values.items():
         states[name][stop] = value
+
+
+def _smoothing(cylinder: Cylinder, at: Array) -> tuple[float, float]:
+    """Force that the smoothing of the slack law adds, and its derivative by a narrow width.
+
+    Against states at the same contraction and pressure, of laws a thousandth as wide; NaN where
+    such a state is not found.
+    """
+    case = cylinder.case
+    if "slack" not in case.as_dict()["numerics"]:
+        return 0.0, 0.0
+    assert case.thread is not None
+    here, kinds = cylinder.state(at), (Control.CONTRACTION, Control.PRESSURE)
+    goal = np.array([_control(cylinder, kind, here) for kind in kinds])
+    forces = []
+    for share in (SHARP, 2 * SHARP):
+        slack = replace(case.numerics.slack, width=share * case.numerics.slack.width)
+        sharp = Cylinder(replace(case, numerics=replace(case.numerics, slack=slack)))
+        found = _walk(sharp, kinds, goal, at)
+        forces.append(math.nan if found is None else sharp.state(found).force)
+    width = case.numerics.slack.width_of(case.thread)
+    return here.force - forces[0], (forces[1] - forces[0]) / (SHARP * width)
 
 
 def _force_slope(cylinder: Cylinder, at: Array, along: Control) -> float:

@@ -65,6 +65,7 @@ VARIABLES = {
     "stiffness": ("N/mm", "dF/dl at fixed pressure"),
     "force_by_pressure": ("N/MPa", "dF/dp at fixed length"),
     "smoothing": ("N", "force that the smoothing of the slack law adds"),
+    "smoothing_rate": ("N", "its derivative by the strain over which threads slacken"),
     "unstable_modes": ("1", "unstable modes at fixed contraction and pressure"),
     "residual": ("1", "largest residual, share of the largest nodal force"),
     "iterations": ("1", "Newton iterations since the state before"),

@@ -17,6 +17,7 @@ from solver.case import Case
 from solver.effects import End, Twist, Volume
 from solver.load_path import Waypoint
 from solver.record import VARIABLES, Solution, unreached
+from solver.smoothing import marked
 from solver.status import CaseStatus, StateStatus, case_status, state_status
 
 LIMITS = ("fold", "asymptote", "crumpling", "overhang")  # kinds of limit that solver/edp names
@@ -39,7 +40,7 @@ def solve(
     """
     direct = _direct(case.model)
     if direct is not None:
-        return _with_diameter(case, direct(case)), None
+        return marked(case, _with_diameter(case, direct(case))), None
     if mesh is None or not mesh.exists() or mesh.stat().st_size == 0:
         return failure(case, CaseStatus.MESH_FAILED, f"no mesh at {mesh}"), None
     if not is_sealed(mesh):
@@ -53,7 +54,7 @@ def solve(
             usage = end.usage if usage is None else usage + end.usage
         if end.status is not None or np.isfinite(states["force"]).all():
             break
-    return _with_diameter(case, _judge(case, states, fields, end, log)), usage
+    return marked(case, _with_diameter(case, _judge(case, states, fields, end, log))), usage
 
 
 @dataclass(frozen=True)
