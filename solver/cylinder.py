@@ -162,6 +162,8 @@ def _record(cylinder: Cylinder, states: dict[str, Array], stop: int, at: Array) 
         "margin": min(state.lz, state.r / cylinder.inner),
         "stiffness": _force_slope(cylinder, at, Control.CONTRACTION),
     }
+    if cylinder.case.effects.rubber is not Rubber.NONE:
+        values["rubber_stretch_max"] = cylinder.rubber_stretch(state)
     values["smoothing"], values["smoothing_rate"] = _smoothing(cylinder, at)
     if muscle.braid is not None:
         stretch = cylinder.thread_stretch(state)

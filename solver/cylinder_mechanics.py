@@ -88,6 +88,13 @@ class Cylinder:
         axial, hoop = self._along_threads(state.r, state.lz, state.twist)
         return np.asarray(np.hypot(axial, hoop))
 
+    def rubber_stretch(self, state: State) -> float:
+        """Largest principal stretch of the wall."""
+        a, b = self._hoop(self.radii, state.r, state.lz) ** 2, state.lz**2
+        half = (a * (1 + (self.radii * state.twist) ** 2) + b) / 2  # of the trace on the surface
+        largest = half + np.sqrt(np.maximum(half**2 - a * b, 0))
+        return float(np.sqrt(max(np.max(largest), np.max(1 / (a * b)))))
+
     def _hoop(self, radii: Array, r: float, lz: float) -> Array:
         """Hoop stretch at reference radii."""
         return np.asarray(np.sqrt(r**2 + (radii**2 - self.inner**2) / lz) / radii)

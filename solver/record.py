@@ -58,6 +58,7 @@ VARIABLES = {
     "equivalent_diameter": ("mm", "equivalent diameter, sign(F) sqrt(4 |F| / (pi p))"),
     "thread_stretch_min": ("1", "smallest thread stretch"),
     "thread_stretch_max": ("1", "largest thread stretch"),
+    "rubber_stretch_max": ("1", "largest principal stretch of the rubber at a quadrature point"),
     "min_det_f": ("1", "smallest det F at a quadrature point"),
     "min_det_f_nodes": ("1", "smallest det F at a corner of an element"),
     "margin": ("1", "smallest of what must stay positive (solver/edp/state.idp)"),
