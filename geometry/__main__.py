@@ -18,10 +18,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from geometry import cell, meridian, section, whole
+from geometry import attempt, cell, meridian, section, whole
 from geometry.grading import UnbuildableMesh
 from geometry.muscle import Muscle
 from geometry.refusal import Refusal, build
+from geometry.seal import write_why_none
 
 KEYS = {
     "meridian": {"kind", "muscle", "mesh"},
@@ -68,13 +69,29 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("spec", help="JSON file, or - for standard input")
     parser.add_argument("output", type=Path, help="file to write, whole or not at all")
+    parser.add_argument(
+        "--or-why",
+        nargs=2,
+        type=float,
+        metavar=("SECONDS", "MB"),
+        help="write why into OUTPUT, with status 0, if it cannot be built within these limits; "
+        "status 1 if it failed for a reason outside, as a full disk or a signal",
+    )
     given = parser.parse_args(arguments)
     try:
         text = sys.stdin.read() if given.spec == "-" else Path(given.spec).read_text()
-        make(json.loads(text), given.output)
+        spec = json.loads(text)
+        if given.or_why is None:
+            make(spec, given.output)
+        elif why := attempt.why_not(lambda: make(spec, given.output), *given.or_why):
+            write_why_none(given.output, why)
+            print(f"cannot be built: {why}", file=sys.stderr)
     except (Refusal, OSError, ValueError) as error:
         print(f"cannot be built: {error}", file=sys.stderr)
         return 2
+    except attempt.Failed as error:
+        print(f"not built, to be tried again: {error}", file=sys.stderr)
+        return 1
     return 0
 
 

@@ -31,12 +31,21 @@ def writing(
         yield
         aside.touch()  # gmsh would not say why it cannot
         with _silent():
-            gmsh.write(str(aside))
+            _write(aside)
         finish(aside)
         os.replace(aside, path)
     finally:
         aside.unlink(missing_ok=True)
         gmsh.finalize()
+
+
+def _write(path: Path) -> None:
+    import gmsh
+
+    try:
+        gmsh.write(str(path))
+    except Exception as error:  # gmsh has no class of its own
+        raise OSError(f"{path}: gmsh cannot write it ({error})") from error
 
 
 @contextmanager

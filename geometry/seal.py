@@ -1,11 +1,14 @@
 """The checksum at the end of a mesh file: a mesh that was cut off or changed is no mesh.
 
-It stands in a comment, so that FreeFEM, gmsh and meshio read the file as ever.
+It stands in a comment, so that FreeFEM, gmsh and meshio read the file as ever. Where there can be
+no mesh, its file says why instead.
 """
 
 import hashlib
+import os
 from pathlib import Path
 
+NO_MESH = b"no mesh: "
 COMMENTS = {  # by the last word of the mesh itself
     b"End": "# sha256 {}\n",  # Medit
     b"$EndElements": "$Comments\nsha256 {}\n$EndComments\n",  # MSH 2.2
@@ -37,6 +40,25 @@ def is_sealed(path: Path) -> bool:
         if content[-size:] == _filled(comment, content[:-size]):
             return True
     return False
+
+
+def write_why_none(path: Path, reason: str) -> None:
+    """Write why there is no mesh, whole or not at all."""
+    aside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        aside.write_bytes(NO_MESH + " ".join(reason.split()).encode()[:4000] + b"\n")
+        os.replace(aside, path)
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def why_none(path: Path) -> str:
+    """Why there is no mesh in a file; empty if there is one."""
+    with path.open("rb") as file:
+        first = file.read(4096)
+    if not (first.startswith(NO_MESH) and first.endswith(b"\n")):
+        return ""
+    return first.removeprefix(NO_MESH).decode(errors="replace").strip()
 
 
 def _filled(comment: str, content: bytes) -> bytes:

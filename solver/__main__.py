@@ -1,8 +1,8 @@
 """Solve one case: ``python -m solver --help``.
 
 Ends with status 0 whenever the case was understood: how the solve went is a status in the record.
-Ends with status 2 and one message if the case makes no sense, with status 1 and one message if no
-record could be written.
+Ends with status 2 and one message if the case makes no sense; with status 1 and one message, and
+without a record, if it failed for a reason outside the case (a full disk, a signal, no FreeFEM).
 """
 
 import argparse
@@ -15,7 +15,7 @@ from pathlib import Path
 
 from geometry.refusal import Refusal
 from solver.case import Case
-from solver.freefem import Limits, Usage
+from solver.freefem import Limits, Outside, Usage
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -36,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"no such case can be solved: {error}", file=sys.stderr)
         return 2
     from solver import record  # numpy only once the case is known to make sense
-    from solver.solve import solve
+    from solver.solve import DamagedMesh, solve
 
     limits = Limits(wall_time=given.wall_time, memory=given.memory)
     try:
@@ -46,8 +46,12 @@ def main(arguments: list[str] | None = None) -> int:
         solving = time.process_time() - began
         record.write(given.record, case, solution)
         _write_cost(given.cost, start, solving, solution.status, usage)
-    except OSError as error:
-        print(f"the record cannot be written: {error}", file=sys.stderr)
+    except DamagedMesh as error:
+        given.mesh.unlink(missing_ok=True)  # else it would be so for ever
+        print(f"not solved, to be tried again: {error}, and deleted", file=sys.stderr)
+        return 1
+    except (OSError, MemoryError, Outside) as error:
+        print(f"not solved, to be tried again: {error}", file=sys.stderr)
         return 1
     return 0
 

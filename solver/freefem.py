@@ -1,27 +1,35 @@
-"""Run a FreeFEM program of solver/edp. The only module that starts a process."""
+"""Run a FreeFEM program of solver/edp."""
 
-import ctypes
 import errno
+import math
 import os
 import re
 import resource
 import shutil
 import signal
 import subprocess
+import sys
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from geometry.attempt import OWN_SIGNALS
+from solver import files
+from solver.process import Family
+
 EDP = Path(__file__).parent / "edp"
 DEBIAN_PLUGINS = Path("/usr/lib/freefem++")  # where Debian puts them; its program looks elsewhere
-FROM_OUTSIDE = {-signal.SIGKILL, -signal.SIGTERM, -signal.SIGINT, -signal.SIGHUP}
 CHECK_ANSWER, CHECK_TIME = "FreeFEM is ready: 2", 20.0  # s
 LONGEST = 200  # characters of a line that is quoted
 LOG_TAIL = 15  # lines of the log that a message quotes
 MIB = 1024**2
+LARGEST_FILE = 256 * MIB  # that FreeFEM may write
+LARGEST_LOG = MIB  # that is kept, its end
+LARGEST_COST = 2**14
 SIZES = {"unknowns"}  # parts of a usage that do not add up
-LIBC = ctypes.CDLL(None)  # loaded before a child forks
-PR_SET_PDEATHSIG = 1  # linux/prctl.h
+NO_MEMORY = "failed to map segment"  # of a loader that may not use enough
+NOT_RUN = {126, 127}  # exit statuses of a shell or loader that could not run the program
+SIGNALLED = 128  # exit status of a shell whose program was ended by signal 0
 OWN_EXITS = {64: "an argument is missing"}
 FREEFEM_EXITS = {
     1: "the program does not compile",
@@ -34,8 +42,12 @@ class FreeFemError(RuntimeError):
     """FreeFEM cannot be run, or stopped with a non-zero status."""
 
 
-class Interrupted(FreeFemError):
-    """It was stopped from outside, which says nothing about the case."""
+class Outside(FreeFemError):
+    """It failed for a reason that says nothing about the case."""
+
+
+class Interrupted(Outside):
+    """A signal from outside stopped it."""
 
 
 class OutOfTime(FreeFemError):
@@ -86,12 +98,12 @@ def executable() -> str:
 
     Raises
     ------
-    FreeFemError
+    Outside
         If there is none on PATH.
     """
     found = shutil.which("FreeFem++")
     if found is None:
-        raise FreeFemError("FreeFem++ is not on PATH; ./setup.sh installs it")
+        raise Outside("FreeFem++ is not on PATH; ./setup.sh installs it")
     return found
 
 
@@ -161,42 +173,34 @@ def environment() -> dict[str, str]:
 def run(
     program: str, flags: dict[str, str | float], workdir: Path, log: Path, limits: Limits
 ) -> Usage:
-    """Run a program of solver/edp in ``workdir`` to its end; its output goes to ``log``.
+    """Run a program of solver/edp in ``workdir`` to its end; the end of its output goes to ``log``.
 
     Raises
     ------
     OutOfTime
         If it runs longer than the limit; it and its children are gone then.
-    Interrupted
-        If a signal from outside stopped it.
+    Outside
+        If it cannot be started; ``Interrupted`` if a signal from outside stopped it.
     OSError
         If it could not write a file to its end.
     FreeFemError
-        If it cannot be started or ends with a non-zero status.
+        If it ends with a non-zero status, by its own fault.
     """
     start = time.monotonic()
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    with log.open("w") as stream:
-        process = subprocess.Popen(
-            command(program, flags),
-            cwd=workdir,
-            env=environment(),
-            stdin=subprocess.DEVNULL,
-            stdout=stream,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-            preexec_fn=lambda: _limit(limits),
+    _check_memory(limits)
+    with log.open("w") as stream, Family() as family:
+        process = family.start(
+            command(program, flags), workdir, environment(), stream, lambda: _limit(limits)
         )
         try:
             status = process.wait(limits.wall_time)
         except subprocess.TimeoutExpired as late:
             raise OutOfTime(f"stopped after {limits.wall_time:g} s, the limit") from late
         finally:
-            _end(process)
-    if status == -signal.SIGXFSZ:
-        raise OSError(errno.EFBIG, "FreeFEM has reached the limit of file sizes")
-    if status != 0:
-        raise (Interrupted if status in FROM_OUTSIDE else FreeFemError)(explain(status))
+            family.end()
+            _shorten(log)
+    _check_status(status, log)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     parts = _parts(workdir / "cost.csv")
     # what the system says is the largest of all children, and of this process before it became one
@@ -209,27 +213,74 @@ def run(
     )
 
 
+def _check_memory(limits: Limits) -> None:
+    """Raise Outside if the limit is more than a process may have here."""
+    _, allowed = resource.getrlimit(resource.RLIMIT_AS)
+    if resource.RLIM_INFINITY != allowed < limits.memory * MIB:
+        raise Outside(
+            f"a process may take {allowed // MIB} MB of memory here (ulimit -v), fewer than the "
+            f"limit of {limits.memory:g} MB"
+        )
+
+
+def _check_status(status: int, log: Path) -> None:
+    """Raise what an exit status means, unless it is 0."""
+    if status > SIGNALLED and status - SIGNALLED in set(signal.Signals):
+        status = SIGNALLED - status  # FreeFEM was run by a shell
+    if status == -signal.SIGXFSZ:
+        if _largest_file() < LARGEST_FILE:
+            raise OSError(errno.EFBIG, "FreeFEM has reached the limit of file sizes")
+        raise FreeFemError(f"FreeFEM wrote a file of more than {LARGEST_FILE // MIB} MB")
+    if status in NOT_RUN and NO_MEMORY not in tail(log):
+        raise Outside(f"FreeFEM cannot be run: {' '.join(tail(log).split())}")
+    if status < 0 and -status not in OWN_SIGNALS:
+        raise Interrupted(explain(status))
+    if status == 2 and "Load error" in tail(log):
+        raise Outside(f"{explain(status)}; ./setup.sh installs Debian's")
+    if status != 0:
+        raise FreeFemError(explain(status))
+
+
 def _parts(path: Path) -> dict[str, float]:
-    """The rows of a program's cost.csv; none if it has written none."""
-    if not path.exists():
-        return {}
-    rows = (line.split(",") for line in path.read_text().splitlines()[1:])
-    return {name: float(value) for name, value in rows}
+    """The rows of a program's cost.csv; none if it has written none.
+
+    Raises
+    ------
+    FreeFemError
+        If it holds anything else than names and numbers.
+    """
+    try:
+        text = (files.read(path, LARGEST_COST) or b"").decode()
+        rows = (line.split(",") for line in text.splitlines()[1:])
+        found = {name: float(value) for name, value in rows}
+        if not all(map(math.isfinite, found.values())):
+            raise ValueError("a number is not finite")
+    except ValueError as error:
+        raise FreeFemError(f"what FreeFEM has written cannot be read ({error})") from error
+    return found
 
 
 def explain(status: int) -> str:
     """What an exit status of FreeFEM means."""
     if status < 0:
-        return f"FreeFEM was ended by {signal.Signals(-status).name}"
+        known = -status in set(signal.Signals)
+        name = signal.Signals(-status).name if known else f"signal {-status}"
+        return f"FreeFEM was ended by {name}"
     meaning = (OWN_EXITS | FREEFEM_EXITS).get(status, "see its log")
     return f"FreeFEM stopped with status {status}: {meaning}"
 
 
 def tail(log: Path) -> str:
     """The last lines of a log."""
-    if not log.exists():
-        return ""
-    return "\n".join(map(readable, log.read_text(errors="replace").splitlines()[-LOG_TAIL:]))
+    text = files.end(log, LOG_TAIL * LONGEST * 4).decode(errors="replace")
+    return "\n".join(map(readable, text.splitlines()[-LOG_TAIL:]))
+
+
+def _shorten(log: Path) -> None:
+    """Keep the end of a log that is too long."""
+    if log.is_file() and log.stat().st_size > LARGEST_LOG:
+        kept = files.end(log, LARGEST_LOG)
+        log.write_bytes(b"(only the end is kept)\n" + kept)
 
 
 def readable(line: str) -> str:
@@ -238,18 +289,15 @@ def readable(line: str) -> str:
 
 
 def _limit(limits: Limits) -> None:
-    """In the child, before FreeFEM starts: no more memory than allowed, and no core file.
-
-    It ends with this process, however that ends.
-    """
-    LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    """No more memory than allowed, no endless file, no core file."""
     memory = int(limits.memory * MIB)
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    size = min(_largest_file(), LARGEST_FILE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Nothing of the process survives, whatever ended the wait."""
-    if process.poll() is None:
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
+def _largest_file() -> int:
+    """Size of the largest file that this process may write [bytes]."""
+    allowed, _ = resource.getrlimit(resource.RLIMIT_FSIZE)
+    return sys.maxsize if allowed == resource.RLIM_INFINITY else allowed

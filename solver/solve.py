@@ -3,16 +3,17 @@
 import csv
 import math
 import tempfile
+import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.cell import Box
-from geometry.seal import is_sealed
-from solver import freefem
+from geometry.seal import is_sealed, why_none
+from solver import files, freefem
 from solver.case import Case
 from solver.effects import End, Twist, Volume
 from solver.load_path import Waypoint
@@ -21,6 +22,10 @@ from solver.smoothing import marked
 from solver.status import CaseStatus, StateStatus, case_status, state_status
 
 LIMITS = ("fold", "asymptote", "crumpling", "overhang")  # kinds of limit that solver/edp names
+RUBBISH = (ValueError, TypeError, LookupError, ArithmeticError, csv.Error)  # unreadable output
+LARGEST_TEXT, LARGEST_ROW = 2**14, 2**12  # bytes
+LARGEST_FIELDS = 400  # bytes per byte of the mesh
+LARGEST_COUNT = 10**9
 FIELDS = {  # columns of fields_<waypoint>.txt, by model
     "membrane": {"meridian": slice(0, 4)},
     "solid": {"corners": slice(0, 4), "stress": slice(4, 8)},
@@ -33,28 +38,37 @@ def solve(
 ) -> tuple[Solution, freefem.Usage | None]:
     """Solve a case; the usage is None for models without FreeFEM.
 
+    The limit of wall time is that of all runs of FreeFEM together.
+
     Raises
     ------
-    OSError
-        If the disk is full: that is no result of the case.
+    OSError, freefem.Outside
+        If it failed for a reason outside the case: a full disk, a signal, a damaged mesh, no
+        FreeFEM. That is no result of the case.
     """
     direct = _direct(case.model)
     if direct is not None:
         return marked(case, _with_diameter(case, direct(case))), None
-    if mesh is None or not mesh.exists() or mesh.stat().st_size == 0:
+    if mesh is None or not mesh.exists():
         return failure(case, CaseStatus.MESH_FAILED, f"no mesh at {mesh}"), None
-    if not is_sealed(mesh):
-        return failure(case, CaseStatus.MESH_FAILED, f"{mesh} is damaged"), None
+    if reason := why_none(mesh):
+        return failure(case, CaseStatus.MESH_FAILED, reason), None
+    _check_mesh(mesh)
+    until = time.monotonic() + limits.wall_time
     states = unreached(case.path.states)
     fields: dict[int, dict[str, NDArray[np.float64]]] = {}
     usage: freefem.Usage | None = None
     for way in case.path.ways():
-        end = _follow(case, way, mesh, log, limits, states, fields)
+        end = _follow(case, way, mesh, log, limits, until, states, fields)
         if end.usage is not None:
             usage = end.usage if usage is None else usage + end.usage
         if end.status is not None or np.isfinite(states["force"]).all():
             break
     return marked(case, _with_diameter(case, _judge(case, states, fields, end, log))), usage
+
+
+class DamagedMesh(OSError):
+    """A mesh that is not as it was written."""
 
 
 @dataclass(frozen=True)
@@ -73,47 +87,75 @@ def _follow(
     mesh: Path,
     log: Path,
     limits: freefem.Limits,
+    until: float,
     states: dict[str, NDArray[np.float64]],
     fields: dict[int, dict[str, NDArray[np.float64]]],
 ) -> _End:
     """Run FreeFEM along a way and add what it reaches to ``states`` and ``fields``."""
-    status, reason, usage = None, "", None
-    with tempfile.TemporaryDirectory() as scratch:
+    status, reason, usage, unknowns = None, "", None, 0
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as scratch:
         work = Path(scratch)
         (work / "composition.idp").write_text(composition(case))
         (work / "waypoints.txt").write_text(waypoint_text(case, way))
         given = flags(case, mesh.resolve())
-        program = f"{case.model}.edp", given, work, log.resolve(), limits
         try:
-            try:
-                usage = freefem.run(*program)
-            except freefem.Interrupted:
-                usage = freefem.run(*program)  # once more; whoever stops it again means it
-        except freefem.OutOfTime as error:
-            status, reason = CaseStatus.TIMEOUT, str(error)
+            program = f"{case.model}.edp"
+            usage = _run_until(until, limits, program, given, work, log.resolve())
+        except freefem.OutOfTime:
+            status, reason = CaseStatus.TIMEOUT, f"stopped after {limits.wall_time:g} s, the limit"
+        except freefem.Outside:
+            raise
         except freefem.FreeFemError as error:
             status, reason = CaseStatus.SOLVER_ERROR, str(error)
-        ended = work / "reason.txt"
-        if status is None and ended.exists():
-            reason = freefem.readable(ended.read_text(errors="replace").strip())
-        unknowns = 0
         try:
+            ended = files.read(work / "reason.txt", LARGEST_TEXT) or b""
+            if status is None:
+                reason = freefem.readable(ended.decode(errors="replace").strip())
             unknowns = _number(work / "unknowns.txt")
-            _collect(case, way, work, states, fields)
-        except (ValueError, TypeError, LookupError) as error:
+            _collect(case, way, work, LARGEST_FIELDS * mesh.stat().st_size, states, fields)
+        except RUBBISH as error:
             status = status or CaseStatus.SOLVER_ERROR
             reason = reason or f"what FreeFEM has written cannot be read ({error})"
         stops = [point.stop for point in way if point.stop is not None]
         if not (status or reason) and np.isnan(states["force"][stops]).any():
             status, reason = CaseStatus.SOLVER_ERROR, "FreeFEM ended early and did not say why"
         if status is CaseStatus.SOLVER_ERROR:
-            _check_disk(work)
+            _check_disk(work.parent)
+            _check_mesh(mesh)
     return _End(status, reason, usage, unknowns)
+
+
+def _run_until(
+    until: float,
+    limits: freefem.Limits,
+    program: str,
+    given: dict[str, str | float],
+    work: Path,
+    log: Path,
+) -> freefem.Usage:
+    """Run FreeFEM, and once more if a signal from outside stopped it; raises as freefem.run."""
+
+    def run() -> freefem.Usage:
+        left = replace(limits, wall_time=max(until - time.monotonic(), 0))
+        return freefem.run(program, given, work, log, left)
+
+    try:
+        return run()
+    except freefem.Interrupted:
+        return run()  # whoever stops it again means it
 
 
 def _check_disk(folder: Path) -> None:
     """Raise OSError if nothing can be written: then what failed says nothing about the case."""
-    (folder / "probe").write_bytes(bytes(2**16))
+    with tempfile.TemporaryFile(dir=folder) as probe:
+        probe.write(bytes(2**16))
+        probe.flush()
+
+
+def _check_mesh(mesh: Path) -> None:
+    """Raise OSError if a mesh is not as it was written, or cannot be read."""
+    if not is_sealed(mesh):
+        raise DamagedMesh(f"{mesh} is damaged")
 
 
 def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solution:
@@ -222,21 +264,25 @@ def _collect(
     case: Case,
     way: list[Waypoint],
     work: Path,
+    largest_fields: int,
     states: dict[str, NDArray[np.float64]],
     fields: dict[int, dict[str, NDArray[np.float64]]],
 ) -> None:
-    """Read what FreeFEM has left in its folder."""
-    for row in _rows(work / "states.csv"):
-        number = int(row["waypoint"])
+    """Read what FreeFEM has left in its folder, if it makes sense."""
+    found = _rows(work / "states.csv", len(way))
+    numbers = [_waypoint(row, way) for row in found]
+    if len(set(numbers)) < len(numbers):
+        raise ValueError("two states at one waypoint")
+    for number, row in zip(numbers, found, strict=True):
         stop = way[number].stop
-        if stop is None:
-            raise ValueError(f"a state at waypoint {number}, which has no stop")
+        assert stop is not None
+        table = files.read(work / f"fields_{number}.txt", largest_fields)
+        if table is not None:
+            fields[stop] = _fields(case.model, table)
         for name in VARIABLES.keys() & row.keys():
             states[name][stop] = row[name]
-        field_file = work / f"fields_{number}.txt"
-        if field_file.exists():
-            table = np.loadtxt(field_file)
-            fields[stop] = {name: table[:, part] for name, part in FIELDS[case.model].items()}
+    if len({len(table) for tables in fields.values() for table in tables.values()}) > 1:
+        raise ValueError("fields of different sizes")
     if case.muscle.braid is None:
         for name in ("thread_stretch_min", "thread_stretch_max"):
             states[name][:] = np.nan
@@ -285,16 +331,45 @@ def _direct(model: str) -> Callable[[Case], Solution] | None:
 
 def _number(path: Path) -> int:
     """The number in a file; 0 if FreeFEM did not come to write it."""
-    text = path.read_text().strip() if path.exists() else ""
-    return int(text) if text else 0
+    text = (files.read(path, LARGEST_TEXT) or b"").decode().strip()
+    number = int(text) if text else 0
+    if not 0 <= number <= LARGEST_COUNT:
+        raise ValueError(f"{number} in {path.name}")
+    return number
 
 
-def _rows(path: Path) -> list[dict[str, float]]:
-    """Rows of a table of numbers; a last line that was cut off is dropped."""
-    if not path.exists():
-        return []
-    lines = [line for line in path.read_text().splitlines(keepends=True) if line.endswith("\n")]
-    return [{n: float(value) for n, value in row.items()} for row in csv.DictReader(lines)]
+def _rows(path: Path, most: int = 1000) -> list[dict[str, float]]:
+    """Rows of a table of numbers, ``most`` of them; a last line that was cut off is dropped."""
+    text = (files.read(path, LARGEST_ROW * (most + 1)) or b"").decode()
+    lines = [line for line in text.splitlines(keepends=True) if line.endswith("\n")]
+    rows = [{n: float(value) for n, value in row.items()} for row in csv.DictReader(lines)]
+    for row in rows:
+        for name, value in row.items():
+            if math.isinf(value):
+                raise ValueError(f"{name} is {value}")
+    return rows
+
+
+def _waypoint(row: dict[str, float], way: list[Waypoint]) -> int:
+    """The waypoint that a row is of."""
+    number = row["waypoint"]
+    if not (number.is_integer() and 0 <= number < len(way)):
+        raise ValueError(f"a state at waypoint {number:g}, which does not exist")
+    if way[int(number)].stop is None:
+        raise ValueError(f"a state at waypoint {number:g}, which has no stop")
+    if not math.isfinite(row["force"]):
+        raise ValueError(f"a state whose force is {row['force']}")
+    return int(number)
+
+
+def _fields(model: str, text: bytes) -> dict[str, NDArray[np.float64]]:
+    """The fields of a state, by name."""
+    parts = FIELDS[model]
+    width = max(part.stop for part in parts.values())
+    table = np.loadtxt(text.decode().splitlines(), ndmin=2)
+    if not text.endswith(b"\n") or table.shape[1] != width or not np.isfinite(table).all():
+        raise ValueError(f"fields of shape {table.shape}, cut off or not finite")
+    return {name: table[:, part] for name, part in parts.items()}
 
 
 def _with_diameter(case: Case, solution: Solution) -> Solution:

@@ -20,7 +20,7 @@ def main(arguments: list[str] | None = None) -> int:
     given = _parser().parse_args(arguments)
     try:
         return given.program(given)
-    except StudyError as error:
+    except (StudyError, OSError) as error:
         print(error, file=sys.stderr)
         return 1
 

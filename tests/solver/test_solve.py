@@ -157,10 +157,8 @@ def test_without_freefem(make_case, mesh_of, tmp_path, monkeypatch):
     case = make_case()
     mesh = mesh_of(case)
     monkeypatch.setenv("PATH", str(tmp_path))
-    solution, _ = solve.solve(case, mesh, tmp_path / "log", LIMITS)
-    assert solution.status is CaseStatus.SOLVER_ERROR
-    assert "./setup.sh" in solution.reason
-    assert_partial(solution, reached=0)
+    with pytest.raises(freefem.Outside, match=r"\./setup\.sh"):
+        solve.solve(case, mesh, tmp_path / "log", LIMITS)
 
 
 def test_time_limit_keeps_what_was_reached(make_case, mesh_of, tmp_path, monkeypatch):

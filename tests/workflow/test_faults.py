@@ -165,12 +165,15 @@ def test_corrupted_files_of_each_kind(project, copy, seed):
     (results / "dataset.nc").unlink()
     status, output = copy.run()
     assert status == 1
+    assert f"{mesh.relative_to(copy.folder)} is damaged, and deleted" in output
+    assert "Traceback" not in output
+    status, output = copy.run()
+    assert status == 1
     assert f"results/cases/{record.name}: should hold" in output
     assert "Traceback" not in output
     status, output = copy.run("retry", program=("workflow",))
     assert status == 0
     assert "was damaged" in output
-    assert "(was mesh_failed): one solid" in output
     finish(copy)
     assert_undisturbed(copy, project)
 
@@ -212,6 +215,50 @@ def test_a_solver_that_hangs_or_prints_rubbish(project, copy, tmp_path):
     assert processes(copy) == {}
     copy.write("config/config.yaml", study)
     copy.run("retry", program=("workflow",))
+    finish(copy)
+    assert_undisturbed(copy, project)
+
+
+FLAWS = {  # what happens when the mesher gives its file its name
+    "killed": "os.kill(os.getpid(), 9)",
+    "full disk": "raise OSError(28, 'No space left on device')",
+    "input/output error": "raise OSError(5, 'Input/output error')",
+}
+FLAWED = """\
+import os, sys
+def replace(*_): {flaw}
+if "geometry" in sys.orig_argv: os.replace = replace
+"""
+
+
+@pytest.mark.parametrize("kind", FLAWS)
+def test_what_stops_the_mesher_from_outside_is_tried_again(
+    project, copy, tmp_path, monkeypatch, kind
+):
+    for path in (copy.folder / "results").glob("*/*.*"):
+        if b"section" in path.read_bytes() or path.suffix == ".msh":
+            path.unlink()
+    (tmp_path / "sitecustomize.py").write_text(FLAWED.format(flaw=FLAWS[kind]))
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    status, output = copy.run()
+    assert status == 1
+    assert "not built, to be tried again" in output
+    assert "Traceback" not in output
+    assert list((copy.folder / "results/meshes").glob("[!.]*.msh")) == []
+    monkeypatch.delenv("PYTHONPATH")
+    finish(copy)
+    assert_undisturbed(copy, project)
+
+
+def test_what_stops_freefem_from_outside_is_tried_again(project, copy, tmp_path):
+    copy.clear()
+    path = fake(tmp_path, membrane="kill -9 $$", solid="exec /nowhere/FreeFem++")
+    status, output = copy.run(path=path)
+    assert status == 1
+    assert "not solved, to be tried again: FreeFEM was ended by SIGKILL" in output
+    assert "not solved, to be tried again: FreeFEM cannot be run" in output
+    assert "Traceback" not in output
+    assert len(list((copy.folder / "results/cases").glob("*.h5"))) == 3
     finish(copy)
     assert_undisturbed(copy, project)
 

@@ -4,7 +4,7 @@
 #   in   what shapes the mesh, from the plan; geometry/
 #   out  results/meshes/<digest>.mesh    curve mesh of the membrane, periodic cell of the braid
 #        results/meshes/<digest>.msh     wall section of the solid
-#        (an empty file where meshing failed: the solve makes it the status mesh_failed)
+#        (why, where it cannot be meshed: the solve makes that the status mesh_failed)
 #        results/muscles/<muscle>.step   tube, caps and threads, of muscles that a scene shows
 
 
@@ -24,8 +24,8 @@ rule mesh:
     message:
         "Meshing {wildcards.mesh}"
     shell:
-        "(ulimit -v $(({resources.memory} * 1024)) && timeout --foreground {resources.wall_time}"
-        " python -m geometry - {output:q} <<< {params.spec:q}) > {log:q} 2>&1 || : > {output:q}"
+        "python -m geometry - {output:q} --or-why {resources.wall_time} {resources.memory}"
+        " <<< {params.spec:q} > {log:q} 2>&1"
 
 
 rule muscle:

@@ -14,6 +14,7 @@ from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
 from solver.solve import solve
 from solver.status import StateStatus
+from workflow.study.errors import StudyError
 from workflow.study.study import StudiedMuscle, Study
 
 
@@ -52,7 +53,10 @@ class Trial:
             numerics=self.variant.numerics,
         )
         if case.key not in self.solved:
-            found, _ = solve(case, self._mesh(case), self.folder / "log", self.limits)
+            try:
+                found, _ = solve(case, self._mesh(case), self.folder / "log", self.limits)
+            except freefem.Outside as error:
+                raise StudyError(f"not solved: {error}") from None
             good = np.array([status is StateStatus.CONVERGED for status in found.state_status])
             self.solved[case.key] = np.where(good, found.states["force"], np.nan)
         return self.solved[case.key]

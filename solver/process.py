@@ -1,0 +1,92 @@
+"""A process and all that it starts. The only module that starts one."""
+
+import ctypes
+import os
+import signal
+import subprocess
+import threading
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, ClassVar
+
+LIBC = ctypes.CDLL(None)  # loaded before a child forks
+PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36  # linux/prctl.h
+
+
+class Family:
+    """A process and all that it starts, of which nothing survives.
+
+    What leaves the group of the process, to go on after it, becomes a child of this process and is
+    known by that.
+    """
+
+    lock = threading.Lock()
+    running: ClassVar[set[int]] = set()  # first processes of all families
+
+    def __enter__(self) -> "Family":
+        LIBC.prctl(PR_SET_CHILD_SUBREAPER, 1)
+        self.others = _children()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if not self.running:
+            LIBC.prctl(PR_SET_CHILD_SUBREAPER, 0)
+
+    def start(
+        self,
+        arguments: list[str],
+        workdir: Path,
+        environment: Mapping[str, str],
+        output: IO[str],
+        limit: Callable[[], None],
+    ) -> subprocess.Popen[bytes]:
+        """Start its first process, which ends with this one, however that ends.
+
+        ``limit`` is called in the new process before the program starts.
+        """
+
+        def prepare() -> None:
+            LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+            limit()
+
+        with self.lock:
+            self.process = subprocess.Popen(
+                arguments,
+                cwd=workdir,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                preexec_fn=prepare,
+            )
+            self.running.add(self.process.pid)
+        return self.process
+
+    def end(self) -> None:
+        """End all of it, whatever ended the wait."""
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+        with self.lock:
+            self.running.discard(self.process.pid)
+            while orphans := _children() - self.others - self.running:
+                for orphan in orphans:
+                    with suppress(OSError):
+                        os.kill(orphan, signal.SIGKILL)
+                        os.waitpid(orphan, 0)
+
+
+def _children() -> set[int]:
+    """Processes whose parent this one is."""
+    try:
+        os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+    except ChildProcessError:
+        return set()  # as nearly always, and there is nothing to look through
+    found = set()
+    for entry in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            if int((entry / "stat").read_text().rpartition(")")[2].split()[1]) == os.getpid():
+                found.add(int(entry.name))
+    return found
