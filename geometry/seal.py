@@ -5,8 +5,9 @@ no mesh, its file says why instead.
 """
 
 import hashlib
-import os
 from pathlib import Path
+
+from geometry.files import aside
 
 NO_MESH = b"no mesh: "
 COMMENTS = {  # by the last word of the mesh itself
@@ -44,12 +45,8 @@ def is_sealed(path: Path) -> bool:
 
 def write_why_none(path: Path, reason: str) -> None:
     """Write why there is no mesh, whole or not at all."""
-    aside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        aside.write_bytes(NO_MESH + " ".join(reason.split()).encode()[:4000] + b"\n")
-        os.replace(aside, path)
-    finally:
-        aside.unlink(missing_ok=True)
+    with aside(path) as beside:
+        beside.write_bytes(NO_MESH + " ".join(reason.split()).encode()[:4000] + b"\n")
 
 
 def why_none(path: Path) -> str:

@@ -117,7 +117,8 @@ def solver_sources(wildcards):
     others = [
         f for model, files in MODEL_SOURCES.items() if model != case.case.model for f in files
     ]
-    geometry = [f"geometry/{name}.py" for name in ("muscle", "refusal", "cell", "seal", "attempt")]
+    read = ("muscle", "refusal", "cell", "seal", "attempt", "files")
+    geometry = [f"geometry/{name}.py" for name in read]
     return sources("solver/*.py", *geometry, *edp, without=[*others, "solver/edp/check.edp"])
 
 
