@@ -145,9 +145,10 @@ def _explain(given: argparse.Namespace) -> int:
 
 
 def _weigh(given: argparse.Namespace) -> int:
+    from workflow.analyses.effects import weigh
     from workflow.plan import effect_costs
 
-    effect_costs.measure(str(given.study))
+    weigh.measure(str(given.study))
     print(f"written: {effect_costs.FILE.name}, {effect_costs.origin()}")
     return 0
 
@@ -185,9 +186,9 @@ def _benchmark(given: argparse.Namespace) -> int:
 
 
 def _bounds(given: argparse.Namespace) -> int:
-    from workflow.plan import mesh_error
+    from workflow.analyses.accuracy.take_over import take_over
 
-    mesh_error.take_over(given.table)
+    take_over(given.table)
     return 0
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geometry.files import aside
 from solver import record
-from workflow.data.principal import principal, principal_of_six
+from workflow.data.principal_stress import principal, principal_of_six
 from workflow.study.errors import StudyError
 
 if TYPE_CHECKING:

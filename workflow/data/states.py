@@ -1,16 +1,27 @@
-"""Tidy tables of a scene's states: one row per state, units in the column names."""
+"""What a figure gets of its scene, and tidy tables of its states: one row per state, with units."""
 
 from collections.abc import Iterable
-from typing import Any
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
+from geometry.muscle import Muscle
+from solver.case import Case
 from solver.load_path import HELD, SWEPT, Control
-from solver.record import VARIABLES
+from solver.record import VARIABLES, Solution
 from solver.status import StateStatus
+from workflow.data import records
 from workflow.data.reference import ForceMap
 from workflow.plan import mesh_error
+from workflow.plan.plan import Plan
+from workflow.study.schema import Scene
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 COLUMN = {name: f"{name} [{unit}]" for name, (unit, _) in VARIABLES.items()}
 CONTRACTION, PRESSURE, FORCE = COLUMN["contraction"], COLUMN["pressure"], COLUMN["force"]
@@ -30,13 +41,62 @@ NUMBER = "state"  # column: number of the state in its record
 SUSPECT = "suspect"  # status of a point that is shown but not used
 
 
+@dataclass(frozen=True)
+class SceneData:
+    """A scene and its solved curves.
+
+    Attributes
+    ----------
+    curves : with the stops of this scene; their cases may have more
+    """
+
+    name: str
+    plan: Plan
+    curves: list[records.Curve]
+
+    @classmethod
+    def read(cls, plan: Plan, scene: str, folder: Path = records.FOLDER) -> "SceneData":
+        """Read the records of a scene."""
+        return cls(scene, plan, records.curves_of_scene(plan, scene, folder))
+
+    @property
+    def scene(self) -> Scene:
+        """What the study file says."""
+        return self.plan.study.scenes[self.name]
+
+    @property
+    def solutions(self) -> list[tuple[str, str, str, float, Case, Solution]]:
+        """Muscle, model, variant, held value, case and solution of every curve, sorted."""
+        return [
+            (c.place.muscle, c.place.model, c.place.variant, c.place.held, c.case, c.solution)
+            for c in self.curves
+        ]
+
+    @property
+    def muscles(self) -> dict[str, Muscle]:
+        """Muscles of the scene by name."""
+        return {name: self.plan.study.muscles[name].muscle for name in self.scene.muscles}
+
+    @property
+    def materials(self) -> dict[str, str]:
+        """Names of their rubbers by the muscle's name."""
+        return {name: self.plan.study.muscles[name].material for name in self.scene.muscles}
+
+    @cached_property
+    def tree(self) -> "xr.DataTree":
+        """The curves as in the dataset (workflow/data/dataset.py)."""
+        from workflow.data import dataset  # a second, and most figures do without
+
+        return dataset.build(self.curves, self.plan.study.muscles)
+
+
 def error_of(column: str) -> str:
     """Column with the discretisation error of another."""
     name, bracket, unit = column.partition(" [")
     return f"{name}_error{bracket}{unit}"
 
 
-def states(data: Any, quantities: Iterable[str]) -> pd.DataFrame:
+def states(data: SceneData, quantities: Iterable[str]) -> pd.DataFrame:
     """States of a scene at its own stops, a case may have more; in the order of the scene.
 
     Columns: source (model), muscle, variant, point (stop or zero force), the two prescribed
@@ -48,14 +108,14 @@ def states(data: Any, quantities: Iterable[str]) -> pd.DataFrame:
 
 
 def of_curve(
-    scene: Any,
+    scene: Scene,
     quantities: Iterable[str],
     muscle: str,
     model: str,
     variant: str,
     held: float,
-    case: Any,
-    solution: Any,
+    case: Case,
+    solution: Solution,
 ) -> pd.DataFrame:
     """The states of one curve, and their numbers in its record."""
     path = case.path
@@ -79,7 +139,7 @@ def of_curve(
     return pd.DataFrame(rows | {"status": status, NUMBER: wanted})
 
 
-def describe(table: pd.DataFrame, data: Any) -> pd.DataFrame:
+def describe(table: pd.DataFrame, data: SceneData) -> pd.DataFrame:
     """Adds what the muscles are made of."""
     muscles = table["muscle"].map(data.muscles)
     return table.assign(

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from workflow.data.principal import principal
+from workflow.data.principal_stress import principal
 
 SECTION = ["R [mm]", "Z [mm]", "r [mm]", "z [mm]"]
 LARGEST, SMALLEST = "largest principal stress [MPa]", "smallest principal stress [MPa]"

@@ -1,4 +1,4 @@
-"""What leaving out an effect changes and saves, as measured: ``weights.csv`` beside this module.
+"""What leaving out an effect changes and saves, as measured: ``effect_costs.csv`` beside this.
 
 Made by ``snakemake --cores 2 effects`` and ``python -m workflow weigh`` from the study of effects;
 committed, because a plan must not depend on what was solved before. Its first line says when and
@@ -6,16 +6,13 @@ with which code; a test solves some of it again and says if it is out of date.
 """
 
 import csv
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from datetime import date
 from functools import cache
 from math import nan
 from pathlib import Path
 from typing import Any
 
-from geometry.files import aside
 from geometry.meridian import MeridianMesh
 from geometry.section import SectionMesh
 
@@ -36,7 +33,6 @@ NUMBERS = {  # that the dataset has: unit, long name
     "seconds_with": ("s", "processor time of a curve with it"),
     "seconds_without": ("s", "processor time of a curve without it"),
 }
-COSTS = Path("results/cost")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,36 +99,3 @@ def group() -> Any:
         data[name] = (("regime", "path", "effect"), values, {"units": unit, "long_name": long_name})
     data.attrs["origin"] = origin()
     return data
-
-
-def measure(study: str, costs: Path = COSTS, file: Path = FILE) -> None:
-    """Write the weights of a solved study of effects, with the seconds that its cases took."""
-    from solver.record import code_digest
-    from workflow.analyses import analysis
-    from workflow.analyses.analysis import Solved
-    from workflow.analyses.effects import table
-    from workflow.data import records
-
-    solved = []
-    seconds: dict[tuple[str, str, str], float] = {}
-    for asked in analysis.cases("effects", study):
-        _, solution = records.read_one(asked.case.key, asked.label)
-        solved.append(Solved(asked, solution))
-        cost = json.loads((costs / f"{asked.case.key}.json").read_text())
-        tags = asked.tags
-        place = str(tags["regime"]), str(tags["path"]), str(tags["setup"])
-        seconds[place] = cost["python_cpu_seconds"] + cost.get("freefem_cpu_seconds", 0.0)
-    rows = table.table(solved).to_dict("records")
-    for row in rows:
-        for side in ("with", "without"):
-            spent = seconds[row["regime"], row["path"], row[side]]
-            row[f"seconds_{side}"] = float(f"{spent:.2g}")
-    names = [f.name for f in fields(Weight)]
-    with aside(file) as beside, beside.open("w", newline="") as stream:
-        stream.write(f"# study of effects of {date.today()}, code {code_digest()}\n")
-        writer = csv.DictWriter(stream, names, extrasaction="ignore", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(
-            {n: "" if v != v else f"{v:g}" if isinstance(v, float) else v for n, v in row.items()}
-            for row in rows
-        )

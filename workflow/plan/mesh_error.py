@@ -1,6 +1,6 @@
 """How far the mesh of a curve is from one that is infinitely fine: measured once, looked up since.
 
-``discretisation.csv`` beside this module holds, for every mesh of the scenes, the largest errors
+``mesh_error.csv`` beside this module holds, for every mesh of the scenes, the largest errors
 that the accuracy study has found on any of their curves, as shares of the curve's largest value:
 
     snakemake --cores 2 accuracy && python -m workflow bounds
@@ -11,7 +11,6 @@ the error of its own curves.
 """
 
 import csv
-import time
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -19,14 +18,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.files import aside
-from solver import record
 from solver.case import MESHED, Case
 from solver.effects import Effects
 from solver.load_path import PathKind
 from solver.numerics import Numerics
 from solver.record import Solution
-from workflow.study.errors import StudyError
 
 FILE = Path(__file__).with_suffix(".csv")
 SETTINGS = ("model", "end", "cap_step", "growth", "body_step", "rows")
@@ -101,35 +97,3 @@ def _bounds() -> dict[tuple[str, ...], list[Bound]]:
             bound = Bound(int(row["refinement"]), errors)
             found.setdefault(tuple(row[name] for name in SETTINGS), []).append(bound)
     return {key: sorted(each, key=lambda b: b.refinement) for key, each in found.items()}
-
-
-def take_over(study_table: Path, path: Path = FILE) -> None:
-    """Write the table from that of the accuracy study.
-
-    Raises
-    ------
-    StudyError
-        If the study has not been evaluated.
-    """
-    if not study_table.exists():
-        raise StudyError(f"{study_table}: there is no such table; run snakemake accuracy")
-    with study_table.open(newline="", encoding="utf-8") as stream:
-        rows = [row for row in csv.DictReader(stream) if row["set"] == "scenes"]
-    families: dict[tuple[str, ...], list[dict[str, str]]] = {}
-    for row in rows:
-        families.setdefault((*_written(row), f"{float(row['refinement']):g}"), []).append(row)
-    with aside(path) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
-        stream.write(f"# {time.strftime('%Y-%m-%d')}, code {record.code_digest()}\n")
-        table = csv.writer(stream, lineterminator="\n")
-        table.writerow(COLUMNS)
-        for key, family in families.items():
-            worst = max(family, key=lambda row: float(row["force_error [1]"]))
-            diameter = max(float(row["diameter_error [1]"]) for row in family)
-            errors = (f"{float(worst['force_error [1]']):.2e}", f"{diameter:.2e}")
-            table.writerow([*key, *errors, len(family), worst["mesh"]])
-
-
-def _written(row: dict[str, str]) -> list[str]:
-    """Settings of a row of the study, numbers in their shortest form."""
-    steps = (f"{float(row[name]):g}" for name in ("cap_step", "growth", "body_step"))
-    return [row["model"], row["end"], *steps, row["rows"]]

@@ -1,6 +1,6 @@
 """Which model, effects and mesh a scene gets: the cheapest that is exact enough for it.
 
-Pure: no files but the measured weights and errors (weights.csv, discretisation.csv) are read, and
+Pure: no files but the measured weights and errors (effect_costs.csv, mesh_error.csv) are read, and
 nothing is solved. The models form a ladder; going down it leaves out one effect after the other,
 and the error of a step is what leaving that effect out has changed in the study of effects, in the
 regimes that the scene touches. A scene that names its ``models`` gets those; its ``effects`` hold
@@ -17,7 +17,7 @@ from math import inf, isnan
 from solver.effects import EFFECTS, KINDS, READ_BY, Effects, active
 from solver.numerics import Numerics
 from solver.refusal import UnsolvableCase
-from workflow.plan import magnitude
+from workflow.plan import force_scale
 from workflow.plan.effect_costs import MESHES, Weight, Weights, load
 from workflow.plan.mesh_error import share_of
 from workflow.study.schema import QUANTITIES, Scene
@@ -185,7 +185,7 @@ def _error(
     study: Study, scene: Scene, rung: Rung, regime: str, weights: Weights
 ) -> tuple[float, bool]:
     """Expected error of a rung: the sum of the steps down to it; and whether states are lost."""
-    size = magnitude.against(study, scene, weights, regime)
+    size = force_scale.against(study, scene, weights, regime)
     total = _of_smearing(study, scene, weights, regime, size) if rung is not OF_CELL else 0.0
     missing = False
     at: Rung | None = rung
@@ -210,7 +210,7 @@ def _of_smearing(study: Study, scene: Scene, weights: Weights, regime: str, size
 
 
 def _change(study: Study, scene: Scene, weight: Weight, size: float) -> float:
-    """What leaving out an effect changes in a scene; ``size`` as of workflow/plan/magnitude.py."""
+    """What leaving out an effect changes in a scene; ``size`` is by force_scale.py."""
     if weight.effect in scene.effects:  # forced on or off: no error
         return 0.0
     change = max(

@@ -15,7 +15,10 @@ from workflow.analyses.accuracy.errors import (
     grid_convergence_index,
     pair_error,
 )
+from workflow.analyses.accuracy.take_over import take_over
 from workflow.analyses.analysis import Solved
+from workflow.plan.mesh_error import COLUMNS
+from workflow.study.errors import StudyError
 from workflow.study.study import load
 
 STUDY = Path(__file__).parents[3] / "config" / "config.yaml"
@@ -136,3 +139,21 @@ def test_deviation_from_both_maps_is_apart(table):
         assert mesh[f"{name}_share [1]"].notna().all()
         ours = mesh.groupby("model")[f"{name}_share [1]"].first()
         assert ours["geometric"] > ours["cylinder"] > ours["membrane"]
+
+
+def test_table_is_taken_over_from_the_study(tmp_path):
+    study = tmp_path / "accuracy.csv"
+    study.write_text(
+        "set,model,end,mesh,refinement,cap_step,growth,body_step,rows,force_error [1],"
+        "diameter_error [1]\n"
+        "mesh,solid,clamp,1/1,1,1.0,1.5,2.0,1 1 1,0.5,0.5\n"
+        "scenes,solid,clamp,one,1.0,1.0,1.5,2.0,1 1 1,0.001,0.0004\n"
+        "scenes,solid,clamp,other,1.0,1.0,1.5,2.0,1 1 1,0.002,0.0003\n"
+    )
+    take_over(study, tmp_path / "found.csv")
+    note, header, row = (tmp_path / "found.csv").read_text().splitlines()
+    assert note.startswith("# 20")
+    assert header == ",".join(COLUMNS)
+    assert row == "solid,clamp,1,1.5,2,1 1 1,1,2.00e-03,4.00e-04,2,other"
+    with pytest.raises(StudyError, match="snakemake accuracy"):
+        take_over(tmp_path / "absent.csv")

@@ -1,5 +1,6 @@
 """The study of effects: its cases, and how changes and savings are read from solutions."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -8,8 +9,10 @@ import pytest
 from solver.record import Solution, unreached
 from solver.status import CaseStatus, StateStatus
 from workflow.analyses.analysis import Solved
+from workflow.analyses.effects import weigh
 from workflow.analyses.effects.cases import REGIMES, SETUPS, cases
 from workflow.analyses.effects.table import SWITCHES, table
+from workflow.plan import effect_costs
 from workflow.study.study import load
 
 STUDY = Path(__file__).parents[3] / "config/config.yaml"
@@ -71,3 +74,20 @@ def test_changes_and_savings(asked):
     assert rows.loc["cap_geometry", "work_with"] == 10 * 7
     assert np.isnan(rows.loc["cap_geometry", "contraction"])
     assert np.isnan(rows.loc["cap_geometry", "threshold"])
+
+
+def test_what_was_weighed_comes_back_to_the_planner(asked, tmp_path, monkeypatch):
+    normal = [a for a in asked if (a.tags["regime"], a.tags["path"]) == ("normal", "isobaric")]
+    forces = {"solid": 100.0, "membrane": 98.0}
+    by_key = {a.case.key: solved(a, forces.get(a.tags["setup"], 50.0)) for a in normal}
+    monkeypatch.setattr(weigh.analysis, "cases", lambda *_: normal)
+    monkeypatch.setattr(
+        weigh.records, "read_one", lambda key, _: (by_key[key].asked.case, by_key[key].solution)
+    )
+    for key in by_key:
+        cost = {"python_cpu_seconds": 0.5, "freefem_cpu_seconds": 1.0}
+        (tmp_path / f"{key}.json").write_text(json.dumps(cost))
+    weigh.measure("", costs=tmp_path, file=tmp_path / "found.csv")
+    known = effect_costs.load(tmp_path / "found.csv")["normal", "isobaric", "cap_geometry"]
+    assert (known.force, known.seconds_with) == (pytest.approx(0.02), 1.5)
+    assert "study of effects of 20" in effect_costs.origin(tmp_path / "found.csv")

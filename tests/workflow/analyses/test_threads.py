@@ -13,7 +13,7 @@ from solver.status import CaseStatus, StateStatus
 from workflow.analyses import dataset_groups
 from workflow.analyses.analysis import Solved
 from workflow.analyses.threads import cases, local
-from workflow.data.principal import principal_of_six
+from workflow.data.principal_stress import principal_of_six
 from workflow.study.study import load
 
 CONFIG = Path(__file__).parents[3] / "config" / "config.yaml"

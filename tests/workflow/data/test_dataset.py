@@ -11,7 +11,7 @@ import xarray as xr
 from solver.record import VARIABLES
 from solver.status import Flag
 from workflow.data import dataset, records
-from workflow.data.scene_data import SceneData
+from workflow.data.states import SceneData
 from workflow.plan.plan import Place
 from workflow.run import failures
 from workflow.study.errors import StudyError

@@ -12,7 +12,7 @@ from solver.case import Case
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin, Thread
 from solver.status import StateStatus
-from workflow.data.scene_data import SceneData
+from workflow.data.states import SceneData
 from workflow.plan.plan import plan
 from workflow.study.study import load
 

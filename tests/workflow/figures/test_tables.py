@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver.status import StateStatus
-from workflow.data.principal import principal
+from workflow.data.principal_stress import principal
 from workflow.data.states import COLUMN, CONTRACTION, FORCE, PRESSURE, WALL
 from workflow.data.stress import LARGEST, SMALLEST, along_meridian, wall
 from workflow.figures.labels import SERIES

@@ -15,7 +15,6 @@ from solver.status import CaseStatus, StateStatus
 from workflow.analyses.accuracy.errors import pair_error, share
 from workflow.plan import mesh_error
 from workflow.plan.plan import plan
-from workflow.study.errors import StudyError
 from workflow.study.study import load
 
 STUDY = Path(__file__).parents[3] / "config" / "config.yaml"
@@ -115,21 +114,3 @@ def test_a_finer_mesh_is_bounded_by_the_next_coarser(make_case):
         return float(mesh_error.error(case, states, "force")[0])
 
     assert error(1) > error(2) == error(3) == error(5) > 0
-
-
-def test_table_is_taken_over_from_the_study(tmp_path):
-    study = tmp_path / "accuracy.csv"
-    study.write_text(
-        "set,model,end,mesh,refinement,cap_step,growth,body_step,rows,force_error [1],"
-        "diameter_error [1]\n"
-        "mesh,solid,clamp,1/1,1,1.0,1.5,2.0,1 1 1,0.5,0.5\n"
-        "scenes,solid,clamp,one,1.0,1.0,1.5,2.0,1 1 1,0.001,0.0004\n"
-        "scenes,solid,clamp,other,1.0,1.0,1.5,2.0,1 1 1,0.002,0.0003\n"
-    )
-    mesh_error.take_over(study, tmp_path / "found.csv")
-    note, header, row = (tmp_path / "found.csv").read_text().splitlines()
-    assert note.startswith("# 20")
-    assert header == ",".join(mesh_error.COLUMNS)
-    assert row == "solid,clamp,1,1.5,2,1 1 1,1,2.00e-03,4.00e-04,2,other"
-    with pytest.raises(StudyError, match="snakemake accuracy"):
-        mesh_error.take_over(tmp_path / "absent.csv")

@@ -68,7 +68,7 @@ def test_the_choice_is_the_cheapest_that_is_exact_enough(study, name, tolerance)
 
 
 def test_the_mesh_takes_a_quarter_of_the_tolerance_and_the_default_is_that_for_a_hundredth(study):
-    """The coarsest that does, by the errors in discretisation.csv."""
+    """The coarsest that does, by the errors in mesh_error.csv."""
     found = {e.rung.mesh: e.mesh_error for e in choose(study, "fig05").estimates[3:6]}
     assert list(found) == ["coarser", "default", "finer"]
     assert found["finer"] < found["default"] <= model_choice.TOLERANCE / 4 < found["coarser"] < 0.01

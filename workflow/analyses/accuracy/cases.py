@@ -18,7 +18,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from geometry.cell import CellMesh
 from geometry.meridian import MeridianMesh
 from geometry.muscle import Muscle
 from geometry.section import SectionMesh
@@ -27,6 +26,22 @@ from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import LoadPath, PathKind
 from solver.material import MooneyRivlin
 from solver.numerics import Newton, Numerics
+from workflow.analyses.accuracy.settings import (
+    BUTT_FAMILY,
+    BUTT_LARGEST,
+    CELLS,
+    COARSE,
+    CONTRACTION,
+    FAMILY,
+    LARGEST,
+    MUSCLE,
+    PART,
+    PRESSURE,
+    STEP,
+    STEPS,
+    TOLERANCES,
+    TUBE_FAMILY,
+)
 from workflow.analyses.analysis import Solved, StudyCase
 from workflow.plan.effect_costs import MESHES
 from workflow.plan.plan import plan
@@ -35,32 +50,6 @@ from workflow.study.study import Study
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
-
-MUSCLE = "dmsp20"  # of the study file
-PRESSURE, CONTRACTION = 0.3, 0.1  # MPa, 1
-LARGEST = 0.2  # contraction
-STEP = 0.01
-FAMILY = (1, 2, 3, 4, 6)  # refinements of the default meshes
-BUTT_FAMILY, BUTT_LARGEST = (1, 2, 3, 4), 0.1  # its corner turns inside out beyond
-TUBE_FAMILY = (1, 2, 4, 8)
-COARSE: dict[str, dict[str, MeridianMesh | SectionMesh]] = {  # not of the default's family
-    "membrane": {
-        "coarser": MeridianMesh(cap_step=1, growth=1.8, body_step=2),
-        "coarsest": MeridianMesh(cap_step=3, growth=2.5, body_step=4),
-    },
-    "solid": {
-        "coarser": MESHES["coarser"]["section"],  # the planner's
-        "coarsest": SectionMesh(cap_step=4, growth=3, body_step=4),
-    },
-}
-CELLS = {  # few, as they are dear; their error is nearly all that they have no caps
-    "coarser": CellMesh(thread_size=1.5, body_size=0.4),
-    "1/1": CellMesh(),
-    "finer": CellMesh(thread_size=0.65, body_size=0.25),
-}
-STEPS = (0.1, 0.05, 0.02, 0.005)  # of contraction, beside STEP
-TOLERANCES = tuple(10.0**-k for k in range(3, 11))
-PART = {"membrane": "meridian", "solid": "section"}  # of the numerics, that is the mesh
 
 
 @dataclass(frozen=True)

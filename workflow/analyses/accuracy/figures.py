@@ -8,8 +8,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from workflow.analyses.accuracy.cases import STEPS
 from workflow.analyses.accuracy.costs import MEMORY, PARTS, SOLVE, growth, joined
+from workflow.analyses.accuracy.settings import STEPS
 from workflow.figures import style
 from workflow.figures.style import SOFT, SOURCES
 

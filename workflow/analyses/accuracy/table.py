@@ -23,7 +23,6 @@ import xarray as xr
 from solver.case import Case
 from solver.load_path import PathKind
 from solver.record import Solution
-from workflow.analyses.accuracy.cases import PART, PRESSURE, STEP
 from workflow.analyses.accuracy.errors import (
     Array,
     extrapolate,
@@ -31,6 +30,7 @@ from workflow.analyses.accuracy.errors import (
     pair_error,
     share,
 )
+from workflow.analyses.accuracy.settings import PART, PRESSURE, STEP
 from workflow.analyses.analysis import Solved
 from workflow.data import deviation, reference
 

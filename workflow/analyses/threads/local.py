@@ -13,7 +13,7 @@ from geometry.cell import Box
 from solver import thread_law
 from solver.case import Case
 from workflow.analyses.analysis import Solved
-from workflow.data.principal import principal_of_six
+from workflow.data.principal_stress import principal_of_six
 
 Array = NDArray[np.float64]
 BINS = 12  # along a thread, within one cell

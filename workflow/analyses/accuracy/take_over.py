@@ -1,0 +1,42 @@
+"""The errors that the accuracy study has found, taken over into workflow/plan/mesh_error.csv."""
+
+import csv
+import time
+from pathlib import Path
+
+from geometry.files import aside
+from solver import record
+from workflow.plan.mesh_error import COLUMNS, FILE
+from workflow.study.errors import StudyError
+
+
+def take_over(study_table: Path, path: Path = FILE) -> None:
+    """Write the table from that of the accuracy study.
+
+    Raises
+    ------
+    StudyError
+        If the study has not been evaluated.
+    """
+    if not study_table.exists():
+        raise StudyError(f"{study_table}: there is no such table; run snakemake accuracy")
+    with study_table.open(newline="", encoding="utf-8") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["set"] == "scenes"]
+    families: dict[tuple[str, ...], list[dict[str, str]]] = {}
+    for row in rows:
+        families.setdefault((*_written(row), f"{float(row['refinement']):g}"), []).append(row)
+    with aside(path) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
+        stream.write(f"# {time.strftime('%Y-%m-%d')}, code {record.code_digest()}\n")
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(COLUMNS)
+        for key, family in families.items():
+            worst = max(family, key=lambda row: float(row["force_error [1]"]))
+            diameter = max(float(row["diameter_error [1]"]) for row in family)
+            errors = (f"{float(worst['force_error [1]']):.2e}", f"{diameter:.2e}")
+            table.writerow([*key, *errors, len(family), worst["mesh"]])
+
+
+def _written(row: dict[str, str]) -> list[str]:
+    """Settings of a row of the study, numbers in their shortest form."""
+    steps = (f"{float(row[name]):g}" for name in ("cap_step", "growth", "body_step"))
+    return [row["model"], row["end"], *steps, row["rows"]]
