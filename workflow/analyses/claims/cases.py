@@ -2,7 +2,7 @@
 
 The cases are those of the study itself, which have its EA, and the same again for every other EA by
 the membrane, which is fast and exact enough; the stress by the solid, which alone has it. Every EA
-makes one dataset, of which workflow/claims asks everything. What single threads change of the force
+makes one dataset, of which the claims ask everything. What single threads change of the force
 of silicone is computed by the cell and is a group of the dataset of the study's EA.
 """
 
