@@ -1,0 +1,126 @@
+"""Which files of this project a program depends on: what it imports, what that imports, and their data.
+
+A job runs again when one of its sources changes, so the list must be neither too short (a stale
+result) nor too long (work for nothing). It follows the import statements, those inside functions
+too, and what a module says of itself::
+
+    DATA = ("workflow/plan/mesh_error.csv",)   files that it reads, as patterns from the checkout
+
+What is found by name at run time (the figure of a scene, an analysis, a model) no import statement
+names: whoever asks names that module as well.
+"""
+
+import ast
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("geometry", "solver", "workflow")
+DECLARATION = "DATA"  # name of the constant
+
+
+def sources(*modules: str) -> list[str]:
+    """Files that these modules are made of, themselves among them; from the checkout, sorted.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If there is no such module, or a module imports one of this project that is not there.
+    FileNotFoundError
+        If a module declares data of which there is none.
+    """
+    found: set[str] = set()
+    for module in closure(modules):
+        found.add(_file(module).relative_to(ROOT).as_posix())
+        found.update(_data(module))
+    return sorted(found)
+
+
+def closure(modules: Iterable[str]) -> set[str]:
+    """These modules and all of this project that they import, directly or not."""
+    found: set[str] = set()
+    ahead = list(modules)
+    while ahead:
+        module = ahead.pop()
+        if module not in found:
+            found.add(module)
+            ahead += _imported(module)
+    return found
+
+
+@cache
+def _imported(module: str) -> tuple[str, ...]:
+    """Modules of this project that a module imports, and the packages that it lies in."""
+    package = module.rpartition(".")[0]
+    names = set(_names(module)) | ({package} if package else set())
+    return tuple(sorted(names))
+
+
+def _names(module: str) -> Iterator[str]:
+    for node in _statements(_tree(module)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if _is_ours(alias.name))
+        elif isinstance(node, ast.ImportFrom):
+            if node.level:
+                raise ImportError(f"{module}: imports are written from the checkout, not with dots")
+            if node.module and _is_ours(node.module):
+                yield node.module
+                inner = (f"{node.module}.{alias.name}" for alias in node.names)
+                yield from filter(_is_module, inner)
+
+
+def _statements(node: ast.AST) -> Iterator[ast.stmt]:
+    """All statements in a module or statement, but those that only a type checker reads."""
+    for name in ("body", "orelse", "handlers", "finalbody", "cases"):
+        for inner in getattr(node, name, ()):
+            if isinstance(inner, ast.stmt):
+                yield inner
+            if not (isinstance(inner, ast.If) and _is_for_types(inner.test)):
+                yield from _statements(inner)
+
+
+def _is_for_types(test: ast.expr) -> bool:
+    return isinstance(test, ast.Name) and test.id == "TYPE_CHECKING"
+
+
+def _data(module: str) -> set[str]:
+    """Files that a module declares."""
+    patterns: tuple[str, ...] = ()
+    for node in _tree(module).body:
+        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == DECLARATION:
+            patterns = ast.literal_eval(node.value)
+    found: set[str] = set()
+    for pattern in patterns:
+        files = {p.relative_to(ROOT).as_posix() for p in ROOT.glob(pattern) if p.is_file()}
+        if not files:
+            raise FileNotFoundError(f"{module} declares {pattern}, and there is no such file")
+        found |= files
+    return found
+
+
+@cache
+def _tree(module: str) -> ast.Module:
+    return ast.parse(_file(module).read_bytes())
+
+
+def _is_ours(name: str) -> bool:
+    return name.partition(".")[0] in PACKAGES
+
+
+def _is_module(name: str) -> bool:
+    try:
+        _file(name)
+    except ModuleNotFoundError:
+        return False
+    return True
+
+
+@cache
+def _file(module: str) -> Path:
+    """The file of a module, or that of a package."""
+    path = ROOT.joinpath(*module.split("."))
+    for file in (path.with_suffix(".py"), path / "__init__.py"):
+        if file.is_file():
+            return file
+    raise ModuleNotFoundError(f"{module}: no such module in this project", name=module)
