@@ -16,6 +16,7 @@ LAYERS = (  # rooms of one layer know nothing of each other
     ("workflow.figures",),
     ("workflow.analyses",),
     ("workflow.report",),
+    ("workflow.programs",),
     ("workflow.__main__",),
 )
 LEVEL = {room: level for level, rooms in enumerate(LAYERS) for room in rooms}

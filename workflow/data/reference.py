@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from workflow.study.schema import FORCE_MAPS
 
 FOLDER = Path(__file__).parents[2] / "config" / "reference"
+DATA = ("config/reference/*.csv",)
 NOMINAL_LENGTH = 300.0  # mm, of the muscle that was measured
 SMALL = 0.1  # share of a curve's largest force below which a relative deviation means nothing
 SAME = 1e-9  # two pressures [MPa] or contractions this close are one

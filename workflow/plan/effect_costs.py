@@ -22,6 +22,7 @@ MESHES: dict[str, dict[str, Any]] = {  # that were weighed: what differs from th
     "finer": {"section": SectionMesh(refinement=2), "meridian": MeridianMesh(refinement=2)},
 }
 FILE = Path(__file__).with_suffix(".csv")
+DATA = ("workflow/plan/effect_costs.csv",)
 NUMBERS = {  # that the dataset has: unit, long name
     "force": ("1", "largest change of force, share of the largest"),
     "contraction": ("1", "largest change of contraction under load, share of the largest"),

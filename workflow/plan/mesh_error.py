@@ -25,6 +25,7 @@ from solver.numerics import Numerics
 from solver.record import Solution
 
 FILE = Path(__file__).with_suffix(".csv")
+DATA = ("workflow/plan/mesh_error.csv",)
 SETTINGS = ("model", "end", "cap_step", "growth", "body_step", "rows")
 COLUMNS = (*SETTINGS, "refinement", "force_error", "diameter_error", "curves", "worst")
 PART = {"membrane": "meridian", "solid": "section"}

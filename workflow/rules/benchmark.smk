@@ -21,4 +21,4 @@ rule benchmark:
         "Measuring what accuracy costs"
     shell:
         "python -m workflow benchmark --study {params.study:q} 2> >(tee {log:q} >&2)"
-        " && python -m workflow study --study {params.study:q} --name accuracy --table {input:q}"
+        " && python -m workflow analysis --study {params.study:q} --name accuracy --table {input:q}"

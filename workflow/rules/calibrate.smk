@@ -9,15 +9,7 @@
 rule calibrate:
     input:
         files=measured_files(),
-        reference=sources("config/reference/*.csv"),
-        sources=sources(
-            "geometry/*.py",
-            "solver/*.py",
-            "solver/edp/*",
-            *READING,
-            "workflow/analyses/calibration/*.py",
-            "workflow/figures/style.py",
-        ),
+        sources=sources("workflow.programs.calibrate"),
     output:
         table="results/tables/calibration.csv",
         values="results/tables/calibration_values.csv",

@@ -16,6 +16,7 @@ from workflow.analyses import analysis
 from workflow.data import paraview
 from workflow.figures.figure import drawn
 from workflow.plan.plan import plan
+from workflow.run.sources import sources
 from workflow.study.errors import StudyError
 from workflow.study.study import load
 
@@ -53,13 +54,8 @@ wildcard_constraints:
     figure="|".join(map(re.escape, filter(drawn, PLAN.study.scenes))) or "none",
 
 
-# What plans a study and reads its records, which all that is made of records needs.
-READING = ["workflow/*.py", "workflow/study/*.py", "workflow/plan/*.py", "workflow/data/*.py"]
-READING += ["geometry/files.py"]
-
-
-def sources(*patterns, without=()):
-    """Source files of some folders, except those named."""
+def matching(*patterns, without=()):
+    """Files of some patterns, except those named."""
     found = {str(path) for pattern in patterns for path in Path().glob(pattern)}
     return sorted(found.difference(without))
 
@@ -72,7 +68,7 @@ def mesh_sources(wildcards):
     """All of geometry/ but what makes other kinds of files."""
     kind = json.loads(spec_of_mesh(wildcards))["kind"]
     kinds = ("meridian", "section", "cell", "whole")
-    return sources("geometry/*.py", without=[f"geometry/{k}.py" for k in kinds if k != kind])
+    return matching("geometry/*.py", without=[f"geometry/{k}.py" for k in kinds if k != kind])
 
 
 STUDIED = {}  # cases of the studies that are asked for, by key
@@ -105,9 +101,9 @@ def spec_of_mesh(wildcards):
 
 
 # Of all sources of the solver, those that only one model reads.
-MODEL_SOURCES = {model: sources(f"solver/{model}*.py", f"solver/edp/{model}*") for model in MODELS}
-MODEL_SOURCES["solid"] += sources("solver/edp/ends_*")
-MODEL_SOURCES["cell"] += sources("geometry/cell.py")
+MODEL_SOURCES = {model: matching(f"solver/{model}*.py", f"solver/edp/{model}*") for model in MODELS}
+MODEL_SOURCES["solid"] += matching("solver/edp/ends_*")
+MODEL_SOURCES["cell"] += matching("geometry/cell.py")
 
 
 def solver_sources(wildcards):
@@ -119,7 +115,7 @@ def solver_sources(wildcards):
     ]
     read = ("muscle", "refusal", "cell", "seal", "attempt", "files")
     geometry = [f"geometry/{name}.py" for name in read]
-    return sources("solver/*.py", *geometry, *edp, without=[*others, "solver/edp/check.edp"])
+    return matching("solver/*.py", *geometry, *edp, without=[*others, "solver/edp/check.edp"])
 
 
 def figures():
@@ -129,14 +125,6 @@ def figures():
 
 def records_of_scene(wildcards):
     return [record_of(case) for case in sorted(set(PLAN.scenes.get(wildcards.figure, {}).values()))]
-
-
-def figure_sources(wildcards):
-    """A figure's own module, what all figures share, and what reads the records."""
-    own = f"workflow/figures/{wildcards.figure}.py"
-    others = [file for file in sources("workflow/figures/fig*.py") if file != own]
-    shown = [] if wildcards.figure in PLAN.scenes else ["geometry/*.py"]
-    return sources("workflow/figures/*.py", *READING, *shown, without=others)
 
 
 def deviations():

@@ -7,7 +7,7 @@
 rule fields:
     input:
         record=lambda wildcards: record_of(FIELD_FILES[wildcards.file][0]),
-        sources=["workflow/data/paraview.py", "workflow/data/principal_stress.py"],
+        sources=sources("workflow.programs.fields"),
     output:
         "results/fields/{file}",
     log:

@@ -7,8 +7,9 @@
 rule figure:
     input:
         records=records_of_scene,
-        reference=sources("config/reference/*.csv", "workflow/plan/mesh_error.csv"),
-        sources=figure_sources,
+        sources=lambda wildcards: sources(
+            "workflow.programs.figure", f"workflow.figures.{wildcards.figure}"
+        ),
     output:
         png="results/figures/{figure}.png",
         svg="results/figures/{figure}.svg",

@@ -10,13 +10,7 @@
 rule gather:
     input:
         records=[record_of(case) for case in PLAN.cases],
-        reference=sources("config/reference/*.csv", "workflow/plan/mesh_error.csv"),
-        sources=sources(
-            *READING,
-            "workflow/plan/effect_costs.csv",
-            "workflow/analyses/*.py",
-            "workflow/run/failures.py",
-        ),
+        sources=sources("workflow.programs.gather"),
     output:
         dataset="results/dataset.nc",
         failures="results/tables/failures.csv",
@@ -41,6 +35,7 @@ rule complete:
         figures=figures(),
         dataset="results/dataset.nc",
         failures="results/tables/failures.csv",
+        sources=sources("workflow.programs.failures"),
     output:
         touch("results/complete.txt"),
     log:

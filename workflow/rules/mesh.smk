@@ -30,7 +30,7 @@ rule mesh:
 
 rule muscle:
     input:
-        sources=sources("geometry/*.py", without=["geometry/meridian.py", "geometry/section.py"]),
+        sources=matching("geometry/*.py", without=["geometry/meridian.py", "geometry/section.py"]),
     output:
         "results/muscles/{muscle}.step",
     log:

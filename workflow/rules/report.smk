@@ -19,7 +19,7 @@ for page_name, (page_chapter, page_title, page_pictures, page_tables) in PAGES.i
             pictures=page_pictures,
             tables=page_tables,
             caption=str(caption_of(page_name)),
-            sources=sources("workflow/report/html_page.py", "geometry/files.py"),
+            sources=sources("workflow.programs.page"),
         output:
             report(
                 f"results/report/{page_name}.html",

@@ -13,12 +13,7 @@ for study_name, study_figures in analysis.FIGURES.items():
             study_name
         input:
             records=lambda wildcards, name=study_name: map(record_of, cases_of_study(name)),
-            sources=sources(
-                *READING,
-                "workflow/figures/style.py",
-                "workflow/analyses/*.py",
-                f"workflow/analyses/{study_name}/*.py",
-            ),
+            sources=sources("workflow.programs.analysis", f"workflow.analyses.{study_name}.cases"),
             # Added to, not read. Not ancient(): with that Snakemake (9.27) leaves the study out of
             # a run in which the dataset is gathered again, even where its outputs are missing.
             dataset="results/dataset.nc" if study_name in analysis.IN_DATASET else [],
@@ -36,5 +31,5 @@ for study_name, study_figures in analysis.FIGURES.items():
         message:
             f"Evaluating the study {study_name}"
         shell:
-            "python -m workflow study --study {params.study:q} --name {params.name:q}"
+            "python -m workflow analysis --study {params.study:q} --name {params.name:q}"
             " --table {output.table:q} > {log:q} 2>&1"

@@ -72,16 +72,14 @@ def _names(module: str) -> Iterator[str]:
 
 def _statements(node: ast.AST) -> Iterator[ast.stmt]:
     """All statements in a module or statement, but those that only a type checker reads."""
-    for name in ("body", "orelse", "handlers", "finalbody", "cases"):
-        for inner in getattr(node, name, ()):
+    parts = ["body", "orelse", "handlers", "finalbody", "cases"]
+    if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
+        parts.remove("body")
+    for part in parts:
+        for inner in getattr(node, part, ()):
             if isinstance(inner, ast.stmt):
                 yield inner
-            if not (isinstance(inner, ast.If) and _is_for_types(inner.test)):
-                yield from _statements(inner)
-
-
-def _is_for_types(test: ast.expr) -> bool:
-    return isinstance(test, ast.Name) and test.id == "TYPE_CHECKING"
+            yield from _statements(inner)
 
 
 def _data(module: str) -> set[str]:

@@ -47,7 +47,7 @@ def test_a_study_that_is_not_there(capsys):
 
 def test_a_damaged_record_of_a_study_is_named(failed, tmp_path, capsys):
     table = tmp_path / "table.csv"
-    assert main(["study", "--name", "some", "--table", str(table)]) == 1
+    assert main(["analysis", "--name", "some", "--table", str(table)]) == 1
     said = capsys.readouterr().err
     assert f"{records.path_of(failed[0].case.key)}: should hold a geometric" in said
     assert not table.exists()

@@ -17,6 +17,8 @@ from solver.status import StateStatus
 from workflow.study.errors import StudyError
 from workflow.study.study import StudiedMuscle, Study
 
+DATA = ("solver/edp/*",)  # whichever model a calibration names
+
 
 def changed(muscle: StudiedMuscle, values: Mapping[str, float]) -> StudiedMuscle:
     """The muscle with other values of ``thread_stiffness`` [N], ``c10``, ``c01`` [MPa]."""

@@ -1,0 +1,145 @@
+"""Which files a program depends on: against small packages, and against what programs really open."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from workflow.run import sources as module
+from workflow.run.sources import sources
+
+TRACER = """\
+import json, pathlib, sys
+root, opened = pathlib.Path(sys.argv[1]), set()
+sys.addaudithook(lambda event, given: opened.add(str(given[0])) if event == "open" else None)
+from workflow.__main__ import main
+status = main(sys.argv[2:])
+files = opened | {m.__file__ for m in list(sys.modules.values()) if getattr(m, "__file__", None)}
+inside = {p.resolve() for p in map(pathlib.Path, files) if p.resolve().is_relative_to(root)}
+print(json.dumps([status, sorted(str(p.relative_to(root)) for p in inside)]))
+"""
+OURS = ("geometry/", "solver/", "workflow/", "config/reference/")
+DISPATCH = "workflow/__main__.py"  # finds a program by its name and does nothing else
+
+
+@pytest.fixture
+def packages(tmp_path, monkeypatch):
+    """A function that writes the modules of a project of its own."""
+
+    def write(**files):
+        for name, text in files.items():
+            path = tmp_path.joinpath(*name.split("__"))
+            path = path.with_suffix(".py") if path.suffix == "" else path
+            for folder in [path.parent, *path.parent.parents]:
+                if folder == tmp_path:
+                    break
+                folder.mkdir(parents=True, exist_ok=True)
+                (folder / "__init__.py").touch()
+            path.write_text(text)
+        return tmp_path
+
+    monkeypatch.setattr(module, "ROOT", tmp_path)
+    caches = module._imported, module._tree, module._file
+    for cached in caches:
+        cached.cache_clear()
+    yield write
+    for cached in caches:
+        cached.cache_clear()
+
+
+def test_imports_are_followed_wherever_they_stand(packages):
+    packages(
+        workflow__a="import workflow.b\n\n\ndef f():\n    from workflow.deep import c\n",
+        workflow__b="try:\n    import solver.d\nexcept ImportError:\n    from solver import e\n",
+        workflow__deep__c="import os, numpy\n",
+        workflow__unread="import solver.f\n",
+        solver__d="",
+        solver__e="class A:\n    from solver.f import name\n",
+        solver__f="name = 1\n",
+    )
+    own = {"workflow/a.py", "workflow/b.py", "workflow/deep/c.py"}
+    inits = {"solver/__init__.py", "workflow/__init__.py", "workflow/deep/__init__.py"}
+    assert set(sources("workflow.a")) == own | inits | {"solver/d.py", "solver/e.py", "solver/f.py"}
+
+
+def test_what_only_a_type_checker_imports_is_left_out(packages):
+    packages(
+        workflow__a=(
+            "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import workflow.b\n"
+            "else:\n    import workflow.c\n"
+        ),
+        workflow__b="",
+        workflow__c="",
+    )
+    assert set(sources("workflow.a")) == {"workflow/__init__.py", "workflow/a.py", "workflow/c.py"}
+
+
+def test_circles_end(packages):
+    packages(workflow__a="import workflow.b\n", workflow__b="import workflow.a\n")
+    assert set(sources("workflow.a")) == {"workflow/__init__.py", "workflow/a.py", "workflow/b.py"}
+
+
+def test_declared_data_belongs_to_whoever_imports_it(packages):
+    root = packages(
+        workflow__a="import workflow.b\n", workflow__b='DATA = ("config/*.csv", "config/one.txt")\n'
+    )
+    (root / "config").mkdir()
+    for name in ("x.csv", "y.csv", "one.txt", "other.txt"):
+        (root / "config" / name).touch()
+    data = {name for name in sources("workflow.a") if name.startswith("config/")}
+    assert data == {"config/x.csv", "config/y.csv", "config/one.txt"}
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("import workflow.missing\n", ModuleNotFoundError),
+        ('DATA = ("config/*.csv",)\n', FileNotFoundError),
+        ("from . import b\n", ImportError),
+    ],
+)
+def test_what_is_not_there_is_an_error(packages, text, error):
+    packages(workflow__a=text)
+    with pytest.raises(error):
+        sources("workflow.a")
+
+
+@pytest.mark.parametrize(
+    ("modules", "arguments"),
+    [
+        (["workflow.programs.gather"], ["gather", "--dataset", "d.nc", "--failures", "f.csv"]),
+        (
+            ["workflow.programs.figure", "workflow.figures.fig90"],
+            ["figure", "--scene", "fig90", "--output", "f.png"],
+        ),
+        (["workflow.programs.failures"], ["failures"]),
+        (
+            ["workflow.programs.page"],
+            ["page", "--title", "t", "--caption", "workflow/report/unnamed.rst", "--output", "p"],
+        ),
+    ],
+)
+def test_programs_open_nothing_else(project, tmp_path, modules, arguments):
+    """Every file of this project that a program opens or imports is one of its sources."""
+    given = [str(tmp_path / a) if a in ("d.nc", "f.csv", "f.png", "p") else a for a in arguments]
+    done = subprocess.run(
+        [sys.executable, "-c", TRACER, str(project.folder.resolve()), *given],
+        cwd=project.folder,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    status, opened = json.loads(done.stdout.splitlines()[-1])
+    asked = subprocess.run(
+        [sys.executable, "-c", f"from workflow.run.sources import *; print(*sources(*{modules}))"],
+        cwd=project.folder,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    known = set(asked.stdout.split()) | {DISPATCH}
+    read = {name for name in opened if name.startswith(OURS) and "__pycache__" not in name}
+    assert status == 0
+    assert len(read) > 5
+    assert read - {given[4] if "--caption" in given else ""} <= known

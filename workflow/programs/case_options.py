@@ -1,0 +1,22 @@
+"""The cases that a program is about: those of the scenes, or those of an analysis that is named."""
+
+import argparse
+from collections.abc import Mapping
+
+from workflow.analyses import analysis
+from workflow.analyses.analysis import StudyCase
+from workflow.plan.plan import PlannedCase
+from workflow.programs import add_study, plan_of
+
+
+def add_cases(parser: argparse.ArgumentParser) -> None:
+    """The options that say which."""
+    add_study(parser)
+    parser.add_argument("--name", metavar="ANALYSIS", help="of this analysis; else of the scenes")
+
+
+def cases_of(given: argparse.Namespace) -> Mapping[str, PlannedCase | StudyCase]:
+    """Cases by key."""
+    if given.name is None:
+        return plan_of(given).cases
+    return {asked.case.key: asked for asked in analysis.cases(given.name, str(given.study))}

@@ -1,0 +1,18 @@
+"""Say what every scene wants, what it gets and why, and which scenes share that."""
+
+import argparse
+
+from workflow.plan import explain
+from workflow.programs import add_study, plan_of
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What it is told."""
+    add_study(parser)
+
+
+def run(given: argparse.Namespace) -> int:
+    """Print it."""
+    for line in explain.lines(plan_of(given)):
+        print(line)
+    return 0

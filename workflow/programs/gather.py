@@ -1,0 +1,35 @@
+"""Write the dataset and the tables of failures and deviations."""
+
+import argparse
+from pathlib import Path
+
+from geometry.files import aside
+from workflow.analyses import dataset_groups
+from workflow.data import dataset, deviation, records, reference
+from workflow.programs import DATASET, FAILURES, add_study, plan_of
+from workflow.run import failures
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What it is told."""
+    add_study(parser)
+    parser.add_argument("--dataset", type=Path, default=DATASET)
+    parser.add_argument("--failures", type=Path, default=FAILURES)
+    parser.add_argument("--deviation", type=Path, help="table of deviations from the force maps")
+
+
+def run(given: argparse.Namespace) -> int:
+    """Read all records of the study and write what is made of all."""
+    plan = plan_of(given)
+    curves = records.curves_of_study(plan)
+    with dataset_groups.alone(given.dataset):
+        others = dataset_groups.found(given.failures.parent)
+        tree = dataset.build(curves, plan.study.muscles, effects=True, others=others)
+        dataset.write(tree, given.dataset)
+    failures.write(plan, {curve.key: curve.solution for curve in curves}, given.failures)
+    if given.deviation:
+        named = {name: muscle.reference for name, muscle in plan.study.muscles.items()}
+        rows = deviation.table(tree, reference.of_muscles(named))
+        with aside(given.deviation) as beside:
+            rows.to_csv(beside, index=False, float_format="%.6g")
+    return 0
