@@ -17,10 +17,8 @@ from functools import cache, cached_property
 from pathlib import Path
 from types import ModuleType
 
-from geometry.files import aside
 from solver.case import Case
 from solver.record import Solution
-from workflow.data import records
 from workflow.plan.plan import mesh_file
 from workflow.study.errors import StudyError, choices
 from workflow.study.study import load
@@ -71,28 +69,3 @@ def cases(name: str, study_file: str) -> tuple[StudyCase, ...]:
     """The cases of a study; made once a process, because every job of Snakemake asks."""
     asked: Iterable[StudyCase] = module(name).cases(load(Path(study_file)))
     return tuple(asked)
-
-
-def evaluate(name: str, study_file: str, table: Path, figures: Path) -> None:
-    """Read the records of a study; write its table and figures, each whole or not at all.
-
-    Raises
-    ------
-    StudyError
-        If a record is missing, damaged, or that of another case.
-    """
-    from workflow.figures import style
-
-    solved = [
-        Solved(asked, records.read_one(asked.case.key, asked.label)[1])
-        for asked in cases(name, study_file)
-    ]
-    rows = module(name).table(solved)
-    with aside(table) as beside:
-        rows.to_csv(beside, index=False)
-    if name in NOTED:
-        with aside(table.with_name(f"{name}_notes.csv")) as beside:
-            module(name).notes(rows).to_csv(beside, index=False, float_format="%.4g")
-    for figure, drawing in module(name).draw(solved, rows).items():
-        for suffix in (".svg", ".png"):
-            style.save(drawing, (figures / figure).with_suffix(suffix))

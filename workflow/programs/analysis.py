@@ -3,7 +3,8 @@
 import argparse
 from pathlib import Path
 
-from workflow.analyses import analysis, dataset_groups
+from workflow.analyses import dataset_groups
+from workflow.analyses.evaluate import evaluate
 from workflow.programs import DATASET, add_study
 
 
@@ -18,6 +19,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Write them, and add the table to a dataset that is there."""
-    analysis.evaluate(given.name, str(given.study), given.table, given.figures)
+    evaluate(given.name, str(given.study), given.table, given.figures)
     dataset_groups.add(given.name, given.table, given.dataset)
     return 0

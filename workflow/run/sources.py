@@ -1,4 +1,4 @@
-"""Which files of this project a program depends on: what it imports, what that imports, and their data.
+"""Files of this project that a program depends on: all that it imports, and the data of that.
 
 A job runs again when one of its sources changes, so the list must be neither too short (a stale
 result) nor too long (work for nothing). It follows the import statements, those inside functions

@@ -1,4 +1,4 @@
-"""Which files a program depends on: against small packages, and against what programs really open."""
+"""Which files a program depends on, by small packages and by what programs really open."""
 
 import json
 import subprocess
