@@ -35,7 +35,9 @@ def group(table: pd.DataFrame) -> xr.Dataset:
     """
     data = xr.Dataset()
     for column in table.columns:
-        name, unit = re.fullmatch(r"(.*?)(?: \[(.*)\])?", column).groups()
+        parts = re.fullmatch(r"(.*?)(?: \[(.*)\])?", column)
+        assert parts is not None  # any text fits
+        name, unit = parts.groups()
         values = table[column]
         if not pd.api.types.is_numeric_dtype(values):
             values = values.fillna("").astype(str)

@@ -24,7 +24,7 @@ same bytes.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -55,7 +55,8 @@ ZERO_FORCE = {
 }
 WORDS = ("status", "flags", "note")  # of a state
 FORCE_ERROR = {"units": "N", "long_name": "bound on the discretisation error of the force"}
-MUSCLE = {  # coordinates along muscle: (unit, long name, value)
+Coordinate = tuple[str, str, Callable[[StudiedMuscle], object]]  # unit, long name, value
+MUSCLE: dict[str, Coordinate] = {  # coordinates along muscle
     "inner_diameter": ("mm", "initial inner diameter", lambda m: m.muscle.inner_diameter),
     "wall_thickness": ("mm", "initial wall thickness", lambda m: m.muscle.wall_thickness),
     "length": ("mm", "initial length between the caps", lambda m: m.muscle.length),
@@ -122,7 +123,9 @@ def _group(name: str, curves: Sequence[Curve], muscles: Mapping[str, StudiedMusc
     words = {name: np.full(shape, "", object) for name in WORDS}
     force_error = np.full(shape, np.nan)
     for curve in curves:
-        at = tuple(place_of[dim][value] for dim, value in _labels(curve, held).items())
+        at: tuple[Any, ...] = tuple(
+            place_of[dim][value] for dim, value in _labels(curve, held).items()
+        )
         along = [place_of[swept][stop] for stop in curve.stops]
         chosen = [curve.case.path.stops.index(stop) for stop in curve.stops]
         for variable, values in states.items():

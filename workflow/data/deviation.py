@@ -37,7 +37,10 @@ class _Akima(ForceMap):
         contraction, force = self._curve_points(pressure)
         if contraction.size < 3:
             return super()._curve(pressure)
-        return Akima1DInterpolator(contraction, force, method="makima", extrapolate=False)
+        curve: Callable[[NDArray[np.float64]], NDArray[np.float64]] = Akima1DInterpolator(
+            contraction, force, method="makima", extrapolate=False
+        )
+        return curve
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +149,7 @@ def table(tree: xr.DataTree, maps: Mapping[str, Mapping[str, ForceMap]]) -> pd.D
     At each pressure and over all of them.
     """
     rows = [
-        curve | {"reference": name, "interpolation": how, "pressure [MPa]": pressure} | values
+        {**curve, "reference": name, "interpolation": how, "pressure [MPa]": pressure, **values}
         for curve, force, status in _curves(tree, maps)
         for name, found in maps[curve["muscle"]].items()
         for how in INTERPOLATIONS

@@ -52,17 +52,19 @@ class ForceMap:
 
     def contractions(self, pressure: float) -> NDArray[np.float64]:
         """Contractions tabulated at a pressure, or at both tabulated pressures around it."""
-        below, above, _ = self._around(pressure)
-        if below is None:
+        around = self._around(pressure)
+        if around is None:
             return np.array([])
+        below, above, _ = around
         return np.intersect1d(self._curve_points(below)[0], self._curve_points(above)[0])
 
     def force(self, contraction: ArrayLike, pressure: float) -> NDArray[np.float64]:
         """Interpolated force [N]; NaN outside the map."""
         contraction = np.asarray(contraction, dtype=float)
-        below, above, share = self._around(pressure)
-        if below is None:
+        around = self._around(pressure)
+        if around is None:
             return np.full(contraction.shape, np.nan)
+        below, above, share = around
         return (1 - share) * self._curve(below)(contraction) + share * self._curve(above)(
             contraction
         )
@@ -71,15 +73,18 @@ class ForceMap:
         """Which states the map says something of."""
         return np.isfinite(self.force(contraction, pressure))
 
-    def _around(self, pressure: float) -> tuple[float | None, float | None, float]:
-        """The tabulated pressures below and above (one and the same on a tabulated one), share."""
+    def _around(self, pressure: float) -> tuple[float, float, float] | None:
+        """The tabulated pressures below and above (one and the same on a tabulated one), share.
+
+        None beyond the map.
+        """
         near = np.abs(self.pressures - pressure) <= SAME
         if near.any():
             same = float(self.pressures[near][0])
             return same, same, 0.0
         place = int(np.searchsorted(self.pressures, pressure))
         if place in (0, self.pressures.size):
-            return None, None, 0.0
+            return None
         below, above = map(float, self.pressures[place - 1 : place + 1])
         return below, above, (pressure - below) / (above - below)
 
@@ -97,7 +102,8 @@ class ForceMap:
             return lambda values: np.where(
                 np.abs(values - contraction[0]) <= SAME, force[0], np.nan
             )
-        return PchipInterpolator(contraction, force, extrapolate=False)
+        curve: Callable[[Points], Points] = PchipInterpolator(contraction, force, extrapolate=False)
+        return curve
 
 
 def musclesim() -> ForceMap:

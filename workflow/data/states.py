@@ -1,6 +1,6 @@
 """What a figure gets of its scene, and tidy tables of its states: one row per state, with units."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -154,7 +154,7 @@ def describe(table: pd.DataFrame, data: SceneData) -> pd.DataFrame:
 
 
 def reference_curves(
-    maps: Iterable[ForceMap], pressures: Iterable[float], contractions: Iterable[float]
+    maps: Iterable[ForceMap], pressures: Sequence[float], contractions: Sequence[float]
 ) -> pd.DataFrame:
     """The maps along contraction, one curve per pressure, with their own points among them."""
     low, high = min(contractions), max(contractions)
@@ -174,7 +174,7 @@ def reference_curves(
 
 
 def reference_at(
-    maps: Iterable[ForceMap], contraction: float, pressures: Iterable[float]
+    maps: Iterable[ForceMap], contraction: float, pressures: Sequence[float]
 ) -> pd.DataFrame:
     """The maps along pressure at one contraction, with their tabulated pressures among them."""
     low, high = min(pressures), max(pressures)

@@ -18,7 +18,7 @@ from workflow.figures.labels import SERIES, shown
 from workflow.figures.style import COMPARED, SOFT, SOURCES, grow, legend, series
 
 NOT_DRAWN = (StateStatus.INVALID_STATE.value, StateStatus.NOT_REACHED.value)
-OPEN = {
+OPEN: dict[str, Any] = {
     "linestyle": "none",
     "marker": "o",
     "markerfacecolor": "white",
@@ -130,7 +130,7 @@ def note_gaps(figure: Figure, table: pd.DataFrame, by: list[str], x: str, text: 
 
 def _errors(table: pd.DataFrame) -> str:
     """How wide the bands of the FE curves are at most; nothing if there are none."""
-    largest = {}
+    largest: dict[Any, float] = {}
     for column in (FORCE, DIAMETER_INSIDE, CONTRACTION):
         error = error_of(column)
         if error in table and column in table:

@@ -51,6 +51,7 @@ def near_cap(ax: Any, state: pd.DataFrame, norm: TwoSlopeNorm) -> None:
     corners, cap = state[state["where"] == "wall"], state[CAP].iloc[0]
     mesh = _triangles(corners[Z], corners[R])
     ax.tripcolor(mesh, corners[LARGEST], norm=norm, **SKIN)
+    assert norm.vmax is not None
     zero = -NOISE * norm.vmax
     ax.tricontour(mesh, corners[LARGEST], [zero], colors="black", linewidths=0.6)
     ax.tricontourf(mesh, corners[LARGEST], [-1e3, zero], colors="none", hatches=["//////"])

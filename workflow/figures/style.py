@@ -6,7 +6,7 @@ matplotlib's parameters; ``save`` writes the same bytes for the same figure.
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import matplotlib
 import numpy as np
@@ -117,14 +117,17 @@ def grid(
     return figure, figure.add_gridspec(rows, columns, **ratios)
 
 
+Shared = bool | Literal["none", "all", "row", "col"]  # axes, as matplotlib has it
+
+
 def panels(
     width: float,
     height: float,
     rows: int = 1,
     columns: int = 1,
     *,
-    sharex: bool | str = False,
-    sharey: bool | str = False,
+    sharex: Shared = False,
+    sharey: Shared = False,
     **options: Any,
 ) -> tuple[Figure, Any]:
     """A figure and its axes, shape (rows, columns); see ``grid``."""

@@ -68,16 +68,15 @@ def load(file: Path = FILE) -> Weights:
     """The measured weights."""
     lines = file.read_text().splitlines()
     rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-    found = [
-        Weight(
-            **{
-                f.name: row[f.name] if f.type is str else float(row[f.name] or nan)
-                for f in fields(Weight)
-            }
-        )
+    found: list[dict[str, Any]] = [
+        {
+            f.name: row[f.name] if f.type is str else float(row[f.name] or nan)
+            for f in fields(Weight)
+        }
         for row in rows
     ]
-    return {(w.regime, w.path, w.effect): w for w in found}
+    weights = [Weight(**values) for values in found]
+    return {(w.regime, w.path, w.effect): w for w in weights}
 
 
 def origin(file: Path = FILE) -> str:

@@ -29,6 +29,7 @@ def lines(plan: Plan) -> Iterator[str]:
 
 
 def _wish(scene: Scene, choice: Choice) -> str:
+    assert scene.path is not None
     swept = scene.swept
     usual = "contraction" if scene.path == "isotonic" else "force"
     held = ", ".join(f"{value:g}" for value in scene.held)

@@ -22,6 +22,7 @@ def against(study: Study, scene: Scene, weights: Weights, regime: str) -> float:
     pressure; the largest force is Eq. (1) less what rubber and threads have taken from it in the
     study.
     """
+    assert scene.path is not None  # a scene without has no curves
     weight = weights[regime, scene.path, EVERYTHING]
     if scene.path == "isotonic":
         return 1.0

@@ -13,6 +13,7 @@ that does; the default meshes are those for the default tolerance.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from math import inf, isnan
+from typing import Any
 
 from solver.effects import EFFECTS, KINDS, READ_BY, Effects, active
 from solver.numerics import Numerics
@@ -102,7 +103,7 @@ def choose(study: Study, scene: Scene, weights: Weights | None = None) -> Choice
         able = [e for e in estimates if not e.refused]
         good = [e for e in able if not e.missing and is_enough(e, tolerance)]
         best = sorted(able, key=lambda e: (e.missing, isnan(e.error), e.error))
-        chosen = (good or best or [None])[0]
+        chosen = next(iter(good or best), None)
     models = scene.models or ((chosen.rung.model,) if chosen else ())
     variants = {
         label: made
@@ -119,7 +120,7 @@ def is_enough(estimate: Estimate, tolerance: float) -> bool:
 
 def switched(effects: Effects, wanted: Mapping[str, str]) -> Effects:
     """Some effects with others of the vocabulary forced on or off, as far as switches do that."""
-    moves = {}
+    moves: dict[str, Any] = {}
     for name, state in wanted.items():
         effect = EFFECTS[name]
         is_off = getattr(effects, effect.switch) in effect.off
@@ -147,6 +148,7 @@ def regimes(study: Study, scene: Scene) -> Iterator[str]:
         yield "thick silicone"
     if any(stiff):
         yield "stiff threads"
+    assert scene.path is not None
     lowest = min(scene.held) if scene.path == "isobaric" else max(scene.swept)
     if lowest < 0.15:
         yield "low pressure"
@@ -162,6 +164,7 @@ def regimes(study: Study, scene: Scene) -> Iterator[str]:
 def _estimate(
     study: Study, scene: Scene, rung: Rung, touched: tuple[str, ...], weights: Weights
 ) -> Estimate:
+    assert scene.path is not None
     refused = refusal(rung.model, scene)
     if rung.model == "geometric" and any(study.muscles[m].thread is None for m in scene.muscles):
         refused = refused or "needs a braid"
@@ -185,6 +188,7 @@ def _error(
     study: Study, scene: Scene, rung: Rung, regime: str, weights: Weights
 ) -> tuple[float, bool]:
     """Expected error of a rung: the sum of the steps down to it; and whether states are lost."""
+    assert scene.path is not None
     size = force_scale.against(study, scene, weights, regime)
     total = _of_smearing(study, scene, weights, regime, size) if rung is not OF_CELL else 0.0
     missing = False

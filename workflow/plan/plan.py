@@ -143,7 +143,7 @@ def plan(study: Study) -> Plan:
     return Plan(
         study=study,
         cases={entry.case.key: entry for entry in ordered},
-        meshes={entry.mesh: entry.case.mesh_spec() for entry in ordered if entry.mesh},
+        meshes={e.mesh: spec for e in ordered if e.mesh and (spec := e.case.mesh_spec())},
         scenes={
             name: {place: planned[curve].case.key for place, curve in sorted(found.items())}
             for name, found in places.items()
@@ -194,6 +194,7 @@ def _case(study: Study, name: str, scene: Scene, place: Place, variant: Variant)
     if scene.effects:
         effects = model_choice.readable(place.model, effects)
     keys, checked = ("scenes", name), study.source.checked
+    assert scene.path is not None
     # Eq. (1) has its zero of force at no pressure but 0, so no threshold
     has_zero = place.model != "geometric" or place.group == "isobaric"
     path = checked(

@@ -8,6 +8,7 @@ import base64
 import html
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -89,7 +90,7 @@ def claims(rows: pd.DataFrame, figure: str | None = None) -> pd.DataFrame:
     )
 
 
-def ours(row: dict) -> str:
+def ours(row: dict[Any, Any]) -> str:
     """Our number with what it may be off by discretisation."""
     if pd.isna(row["ours"]):
         return ""

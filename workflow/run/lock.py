@@ -6,9 +6,10 @@ import re
 import signal
 import sys
 from pathlib import Path
+from typing import TextIO
 
 MARK = "MUSCLE_RUN"  # environment variable of all that a run starts: the lock it holds
-_held = []  # open files: a lock lives as long as its file is open in a living process
+_held: list[TextIO] = []  # open files: a lock lives as long as its file is open in a living process
 
 
 def take(path: Path) -> None:

@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from statistics import mean
-from typing import TextIO
+from typing import Any, TextIO
 
 from snakemake_interface_logger_plugins.common import LogEvent
 
@@ -73,15 +73,16 @@ class Progress(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Take notice of a job that began, ended or broke off."""
+        said: Any = record  # with what Snakemake adds to it
         event = getattr(record, "event", None)
         if event == LogEvent.JOB_INFO:
-            case = record.wildcards.get("case", "") if record.rule_name == "solve" else ""
-            message = record.rule_msg or record.rule_name
-            self.running[record.jobid] = message, case, time.monotonic()
+            case = said.wildcards.get("case", "") if said.rule_name == "solve" else ""
+            message = said.rule_msg or said.rule_name
+            self.running[said.jobid] = message, case, time.monotonic()
         elif event == LogEvent.JOB_FINISHED:
-            self._finish(record.job_id)
+            self._finish(said.job_id)
         elif event == LogEvent.JOB_ERROR:
-            self.running.pop(record.jobid, None)
+            self.running.pop(said.jobid, None)
         else:
             return
         self.changed = True
@@ -140,6 +141,7 @@ class Progress(logging.Handler):
 
     def _tick(self) -> None:
         while not self.ended.wait(INTERVAL):
+            assert self.lock is not None  # every handler has one
             with self.lock:
                 silent = time.monotonic() - self.spoke > SILENCE
                 if not self.ended.is_set() and (self.changed or silent):

@@ -64,10 +64,12 @@ class Source:
 
     def place(self, keys: Keys) -> str:
         """``file:line: key.path``; the line is that of the last key that is there."""
-        node, line = self.marked, None
+        node: Any = self.marked
+        line = None
         for key in keys:
             try:
-                line = (node.lc.key(key) if isinstance(node, Mapping) else node.lc.item(key))[0]
+                marks = node.lc  # where ruamel.yaml has read it
+                line = (marks.key(key) if isinstance(node, Mapping) else marks.item(key))[0]
                 node = node[key]
             except (AttributeError, KeyError, IndexError, TypeError):
                 break

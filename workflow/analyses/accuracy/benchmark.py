@@ -131,7 +131,7 @@ def expected_seconds(asked: StudyCase) -> float:
         return 0.3
     seconds, power = EXPECTED[asked.case.model]
     refinement = max(float(asked.tags["refinement"]), 1.0)
-    return AROUND + seconds * refinement**power * asked.case.path.states / STATES
+    return float(AROUND + seconds * refinement**power * asked.case.path.states / STATES)
 
 
 def _python(arguments: list[str], text: str = "") -> float:

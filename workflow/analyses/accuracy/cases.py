@@ -16,7 +16,7 @@ this.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from geometry.meridian import MeridianMesh
 from geometry.muscle import Muscle
@@ -112,7 +112,8 @@ def settings() -> Iterator[_Setting]:
     yield _Setting("mesh", "cylinder", "", stops=stops())
     for model, part in PART.items():
         for name, mesh in COARSE[model].items():
-            yield _Setting("mesh", model, name, Numerics(**{part: mesh}), stops=stops())
+            coarse = _with_mesh(Numerics(), part, mesh)
+            yield _Setting("mesh", model, name, coarse, stops=stops())
         for m in FAMILY:
             yield _Setting("mesh", model, f"1/{m}", _refined(part, m), refinement=m, stops=stops())
         for step in STEPS:
@@ -192,11 +193,17 @@ def _scenes(study: Study) -> Iterator[StudyCase]:
             yield from _pair(f"{planned.label}, coarser", case, MESHES["coarser"][part])
 
 
+def _with_mesh(numerics: Numerics, part: str, mesh: MeridianMesh | SectionMesh) -> Numerics:
+    """Some settings with another mesh."""
+    changed: dict[str, Any] = {part: mesh}
+    return replace(numerics, **changed)
+
+
 def _pair(name: str, case: Case, mesh: MeridianMesh | SectionMesh) -> Iterator[StudyCase]:
     """A curve on a mesh and on one twice as fine."""
     finer = replace(mesh, refinement=2 * mesh.refinement)
     for each in (mesh, finer):
-        numerics = replace(case.numerics, **{PART[case.model]: each})
+        numerics = _with_mesh(case.numerics, PART[case.model], each)
         fields = case.fields_at if numerics == case.numerics else ()  # a record that there is
         setting = _Setting(
             "scenes", case.model, name, numerics, case.effects, refinement=each.refinement

@@ -203,7 +203,7 @@ def _against_fullest(table: pd.DataFrame) -> None:
         for model, family in mesh[mesh["refinement"] > 0].groupby("model")
     }
     fullest = limits[FULLEST]
-    contractions = STEP * np.arange(len(fullest))
+    contractions: Array = STEP * np.arange(len(fullest), dtype=float)
     for index, row in table[table["set"].isin(["mesh", "steps", "tolerance"])].iterrows():
         same, places = _common(row["_solution"], contractions)
         force = row["_solution"].states["force"]

@@ -10,7 +10,7 @@ solid, which shows whether that model was good enough.
 
 import math
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -93,7 +93,9 @@ def _parameters(entry: CalibrationEntry, muscle: StudiedMuscle) -> list[Paramete
     ]
 
 
-def _residuals(name: str, entry: CalibrationEntry, found: ForceMap, trial: Trial):
+def _residuals(
+    name: str, entry: CalibrationEntry, found: ForceMap, trial: Trial
+) -> Callable[[Mapping[str, float]], NDArray[np.float64]]:
     """Function of the values: forces minus those of the map, at the fitted pressures [N]."""
     wanted: dict[float, tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
     for pressure in entry.fit_pressure:

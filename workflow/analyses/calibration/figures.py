@@ -1,5 +1,7 @@
 """Forces before and after a calibration, over those it was fitted to and those it was not."""
 
+from typing import Any
+
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -23,7 +25,7 @@ def draw(tables: dict[str, pd.DataFrame], models: dict[str, str]) -> Figure:
     """One row per calibration, one column per pressure; tables as of ``Calibration.states``."""
     columns = max(table["pressure"].nunique() for table in tables.values())
     count = len(tables)
-    shared = {"sharex": True, "sharey": "row", "gap": (0.16, 0.4)}
+    shared: dict[str, Any] = {"sharex": True, "sharey": "row", "gap": (0.16, 0.4)}
     figure, axes = panels(FULL, 1.1 + 1.7 * count, count, columns, **shared)
     for row, (name, table) in zip(axes, tables.items(), strict=True):
         for ax, (pressure, here) in zip(row, table.groupby("pressure"), strict=False):

@@ -1,6 +1,6 @@
 """Forces of a muscle with trial values for its stiffnesses, computed at once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -41,7 +41,11 @@ class Trial:
         self.solved: dict[str, NDArray[np.float64]] = {}
 
     def forces(
-        self, values: Mapping[str, float], model: str, pressure: float, stops: Sequence[float]
+        self,
+        values: Mapping[str, float],
+        model: str,
+        pressure: float,
+        stops: Iterable[float],
     ) -> NDArray[np.float64]:
         """Forces at rising contractions [N]; NaN where there is no valid state."""
         muscle = changed(self.muscle, values)

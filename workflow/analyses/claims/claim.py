@@ -138,7 +138,7 @@ def bend(x: ArrayLike, y: ArrayLike) -> float:
     return float(np.max(np.abs(y - chord)) / np.ptp(y))
 
 
-def graded(value: float, parts: Sequence[bool], why: str) -> Finding:
+def graded(value: float, parts: Sequence[bool | np.bool_], why: str) -> Finding:
     """Reproduced if all parts hold, not reproduced if none does."""
     if all(parts):
         return Finding(value, Verdict.REPRODUCED, why)

@@ -1,6 +1,7 @@
 """C1, figure 4: force against contraction at constant pressures."""
 
 import numpy as np
+import pandas as pd
 
 from workflow.analyses.claims.claim import (
     GEOMETRIC,
@@ -114,10 +115,11 @@ def _forces(data: Data, model: str) -> Array:
 
 def _equation(data: Data) -> Array:
     """Deviation of Eq. (1) as a share of the curve's largest force, (pressure, contraction)."""
-    return _deviations(data, GEOMETRIC)[SHARE].to_numpy().reshape(len(PRESSURES), -1)
+    found: Array = _deviations(data, GEOMETRIC)[SHARE].to_numpy()
+    return found.reshape(len(PRESSURES), -1)
 
 
-def _deviations(data: Data, model: str):
+def _deviations(data: Data, model: str) -> pd.DataFrame:
     """All states of the rule (workflow/data/deviation.py)."""
     try:
         points = data.tree["reference"].to_dataset()

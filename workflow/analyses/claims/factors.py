@@ -1,5 +1,7 @@
 """C6 to C9, figures 9 to 13: braid angle, diameter, wall thickness, rubber."""
 
+from functools import partial
+
 import numpy as np
 
 from workflow.analyses.claims.claim import (
@@ -124,7 +126,7 @@ def silicone_is_best_at_two(data: Data) -> Finding:
     force = _wall_forces(data, SILICONE)
     why = f"{listed(force)} N at 1.5, 2, 2.5, 3 mm"
     if "threads" in data.tree.children:
-        change = values(data.tree["threads"]["change"], wall=list(SILICONE))
+        change = values(data.tree["threads"].to_dataset()["change"], wall=list(SILICONE))
         force = force + change
         why += f"; single threads change that by {listed(change, '.2f')} N (cell)"
     best = list(SILICONE)[int(np.argmax(force))]
@@ -232,7 +234,7 @@ CLAIMS = (
             f"F(40)/F(20) up to 15 %, 40 mm with {n} threads a layer",
             "1",
             f"{RATIO:g}",
-            lambda data, n=n: ratio_at_first(data, n),
+            partial(ratio_at_first, threads=n),
         )
         for name, n in (("C7c", 60), ("C7d", 120))
     ),
@@ -243,7 +245,7 @@ CLAIMS = (
             f"F(40)/F(20) at 20 %, 40 mm with {n} threads a layer",
             "1",
             f"{SURGE:g}",
-            lambda data, n=n: ratio_at_last(data, n),
+            partial(ratio_at_last, threads=n),
         )
         for name, n in (("C7e", 60), ("C7f", 120))
     ),

@@ -167,7 +167,8 @@ def _equivalent(data: Data) -> xr.DataArray:
     """sqrt(4 F / (pi p)) above the threshold [mm]; NaN below."""
     force = _isometric(data, "force")
     pulling = force.where((force > 0) & (force.pressure > 0))
-    return np.sqrt(4 * pulling / (np.pi * force.pressure))
+    size: xr.DataArray = np.sqrt(4 * pulling / (np.pi * force.pressure))
+    return size
 
 
 def _loaded(data: Data, load: float) -> xr.DataArray:

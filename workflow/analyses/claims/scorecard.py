@@ -148,4 +148,5 @@ def _blocked_force(data: xr.Dataset) -> xr.DataArray:
     """Force at no contraction and each pressure by Eq. (1) [N]."""
     angle = np.radians(data.braid_angle)
     area = np.pi * data.inner_diameter**2 / 4
-    return data.pressure * area * (3 * np.cos(angle) ** 2 - 1) / np.sin(angle) ** 2
+    force: xr.DataArray = data.pressure * area * (3 * np.cos(angle) ** 2 - 1) / np.sin(angle) ** 2
+    return force

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from solver.case import Case
-from solver.effects import Effects
+from solver.effects import Effects, Layers, Rubber, Stretch, ThreadLaw, Twist, Volume, Wall
 from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
 from solver.numerics import Numerics
@@ -73,18 +73,18 @@ SETUPS = {
     "solid, finer": Setup(model="solid", mesh="finer"),
     "solid": Setup(model="solid"),
     "solid, coarser": Setup(model="solid", mesh="coarser"),
-    "solid, incompressible": Setup(model="solid", effects=Effects(volume="incompressible")),
-    "solid, two-way": Setup(model="solid", effects=Effects(threads="two_way")),
+    "solid, incompressible": Setup(model="solid", effects=Effects(volume=Volume.INCOMPRESSIBLE)),
+    "solid, two-way": Setup(model="solid", effects=Effects(threads=ThreadLaw.TWO_WAY)),
     "membrane, finer": Setup(model="membrane", mesh="finer"),
     "membrane": Setup(model="membrane"),
-    "membrane, one radius": Setup(model="membrane", effects=Effects(wall="one_radius")),
+    "membrane, one radius": Setup(model="membrane", effects=Effects(wall=Wall.ONE_RADIUS)),
     "cylinder": Setup(model="cylinder"),
-    "cylinder, twisting": Setup(model="cylinder", effects=Effects(twist="free")),
-    "cylinder, rigid": Setup(model="cylinder", effects=Effects(stretch="rigid")),
-    "cylinder, no rubber": Setup(model="cylinder", effects=Effects(rubber="none")),
+    "cylinder, twisting": Setup(model="cylinder", effects=Effects(twist=Twist.FREE)),
+    "cylinder, rigid": Setup(model="cylinder", effects=Effects(stretch=Stretch.RIGID)),
+    "cylinder, no rubber": Setup(model="cylinder", effects=Effects(rubber=Rubber.NONE)),
     "geometric": Setup(model="geometric"),
     "cell": Setup(model="cell"),
-    "cell, smeared": Setup(model="cell", effects=Effects(layers="smeared")),
+    "cell, smeared": Setup(model="cell", effects=Effects(layers=Layers.SMEARED)),
 }
 
 

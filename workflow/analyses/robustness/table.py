@@ -78,7 +78,7 @@ def _finest(solved: Sequence[Solved]) -> dict[tuple[str, str], Solved]:
         if entry.asked.case.model != "solid":
             continue
         known = found.get(_group(entry))
-        if known is None or known.asked.tags["mesh"] < entry.asked.tags["mesh"]:
+        if known is None or float(known.asked.tags["mesh"]) < float(entry.asked.tags["mesh"]):
             found[_group(entry)] = entry
     return found
 

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from geometry.muscle import Braid
 from solver.case import Case
-from solver.cylinder_mechanics import Cylinder
+from solver.cylinder_mechanics import Cylinder, State
 from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
 from solver.record import Solution
@@ -35,12 +35,13 @@ SEED, SAMPLES = 20260101, 128  # samples: a power of two, times the number of in
 CHECK = "solid"
 RADII = (0.8, 4.0)  # inner radii between which a pressure is looked for
 SHORTEST = 0.5  # axial stretch from which on the free contraction is looked for
+Ranges = Mapping[str, float | tuple[float, float]]
 OUTPUTS = {
     "force": "force at the contraction and pressure",
     "threshold_pressure": "threshold pressure",
     "free_contraction": "free contraction",
 }
-UNCERTAIN = {  # what is not known of the paper's muscle: share of its value, or ends
+UNCERTAIN: Ranges = {  # what is not known of the paper's muscle: share of its value, or ends
     "thread_stiffness": (50.0, 650.0),  # N
     "c10": 0.2,
     "c01": 0.2,
@@ -49,7 +50,8 @@ UNCERTAIN = {  # what is not known of the paper's muscle: share of its value, or
     "wall_thickness": 0.05,  # 0.1 mm
     "lead": 0.04,  # a tenth of a millimetre between threads
 }
-DESIGN = {  # Table 1; the contraction without its ends, where there is no threshold or no force
+# Table 1; the contraction without its ends, where there is no threshold or no force
+DESIGN: Ranges = {
     "contraction": (0.05, 0.15),
     "pressure": (0.2, 0.4),  # MPa
     "inner_diameter": (20.0, 40.0),  # mm
@@ -106,7 +108,7 @@ class Normal:
 
         A wider bore keeps the layers' distance from it and the braid angle.
         """
-        p = self.point | changes
+        p = {**self.point, **changes}
         base = self.muscle.muscle
         shift = (p["inner_diameter"] - base.inner_diameter) / 2
         layers = (2 * (p["inner_layer"] + shift), 2 * (p["outer_layer"] + shift))
@@ -188,8 +190,11 @@ def _neighbours(normal: Normal) -> Iterator[tuple[str, int, Point]]:
 
 def table(solved: Sequence[Solved]) -> pd.DataFrame:
     """One row per analysis, model, input and output."""
-    normal = solved[0].asked.normal
-    by_model: dict[str, dict] = {"cylinder": {}, CHECK: {}}
+    first = solved[0].asked
+    assert isinstance(first, SensitivityCase)
+    assert first.normal is not None
+    normal = first.normal
+    by_model: dict[str, dict[tuple[str, int], dict[str, float]]] = {"cylinder": {}, CHECK: {}}
     for name, way, changes in _neighbours(normal):
         by_model["cylinder"][name, way] = _by_cylinder(normal, changes)
         found = [s for s in solved if (s.asked.tags["input"], s.asked.tags["way"]) == (name, way)]
@@ -205,19 +210,22 @@ def _by_cylinder(normal: Normal, changes: Mapping[str, float]) -> dict[str, floa
     case, _ = normal.cases(changes, "cylinder")
     tube, pressure = Cylinder(case), case.path.held
 
+    def state(r: float, lz: float) -> State:
+        return tube.state(np.array([r, lz]))
+
     def radius(lz: float) -> float:
         """In inner radii, at the pressure."""
-        return float(brentq(lambda r: tube.state([r, lz]).pressure - pressure, *RADII))
+        return float(brentq(lambda r: state(r, lz).pressure - pressure, *RADII))
 
     def force(lz: float) -> float:
-        return tube.state([radius(lz), lz]).force
+        return state(radius(lz), lz).force
 
     lz = 1 - case.path.stops[0]
     found = {"force": force(lz), "threshold_pressure": np.nan, "free_contraction": np.nan}
     if found["force"] > 0:  # so both zeros lie between here and the slack muscle
-        empty = brentq(lambda r: tube.state([r, lz]).pressure, RADII[0], radius(lz))
-        at = brentq(lambda r: tube.state([r, lz]).force, empty, radius(lz))
-        found["threshold_pressure"] = tube.state([at, lz]).pressure
+        empty = brentq(lambda r: state(r, lz).pressure, RADII[0], radius(lz))
+        at = brentq(lambda r: state(r, lz).force, empty, radius(lz))
+        found["threshold_pressure"] = state(at, lz).pressure
         found["free_contraction"] = 1 - float(brentq(force, SHORTEST, lz))
     return found
 
@@ -239,9 +247,7 @@ def _local(
             }
 
 
-def _global(
-    name: str, normal: Normal, ranges: Mapping[str, float | tuple[float, float]]
-) -> Iterator[dict[str, str | float]]:
+def _global(name: str, normal: Normal, ranges: Ranges) -> Iterator[dict[str, str | float]]:
     """Sobol's indices; samples without a result (counted) are set to the mean of the others."""
     from SALib.analyze import sobol as analysis  # late: a second
     from SALib.sample import sobol as sampling
