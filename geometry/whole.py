@@ -27,11 +27,6 @@ def volume(muscle: Muscle) -> float:
     return math.pi * (muscle.outer_radius**2 - muscle.inner_radius**2) * muscle.length
 
 
-def thread_length(muscle: Muscle, layer: int) -> float:
-    """Length of each thread of a layer (0 inner, 1 outer) between the caps [mm]."""
-    return muscle.length / math.cos(_braid(muscle).layer_angles[layer])
-
-
 def thread_turns(muscle: Muscle, layer: int, z: NDArray[np.float64]) -> NDArray[np.float64]:
     """Angles about the axis of all threads of a layer (0 inner, 1 outer) at heights Z [rad].
 

@@ -128,13 +128,11 @@ class Effect:
 
     Attributes
     ----------
-    energy : what it adds to the energy
     models : those that carry it
     switch : field of Effects by which some of them leave it out; empty if the model decides
     off : values of the switch that leave it out
     """
 
-    energy: str
     models: tuple[str, ...]
     switch: str = ""
     off: tuple[str, ...] = ()
@@ -142,59 +140,50 @@ class Effect:
 
 
 WITH_RUBBER = ("cylinder", "membrane", "solid", "cell")
-EFFECTS = {
-    "rubber": Effect(
-        energy="C10 (I1 - 3) + C01 (I2 - 3) of the wall",
+EFFECTS = {  # with what each adds to the energy
+    "rubber": Effect(  # C10 (I1 - 3) + C01 (I2 - 3) of the wall
         models=WITH_RUBBER,
         switch="rubber",
         off=(Rubber.NONE,),
     ),
-    "wall_thickness": Effect(
-        energy="rubber, threads and pressure each at their own radius, not all at one",
+    "wall_thickness": Effect(  # rubber, threads and pressure at their own radii, not all at one
         models=WITH_RUBBER,
         switch="wall",
         off=(Wall.ONE_RADIUS,),
     ),
-    "thread_stretch": Effect(
-        energy="EA (lf - 1)^2 / 2 of the threads, in place of lf <= 1",
+    "thread_stretch": Effect(  # EA (lf - 1)^2 / 2 of the threads, in place of lf <= 1
         models=WITH_RUBBER,
         switch="stretch",
         off=(Stretch.RIGID,),
         braid=True,
     ),
-    "slackening": Effect(
-        energy="no energy of threads that are shortened",
+    "slackening": Effect(  # no energy of threads that are shortened
         models=WITH_RUBBER,
         switch="threads",
         off=(ThreadLaw.TWO_WAY,),
         braid=True,
     ),
-    "end_caps": Effect(
-        energy="the same energy of a wall that is held to its first radius at the caps",
+    "end_caps": Effect(  # the same energy of a wall that is held to its first radius at the caps
         models=("membrane", "solid"),
         switch="end",
         off=(End.SLIDING,),
     ),
-    "cap_geometry": Effect(
-        energy="bending and shear of the wall, and the springs of the fitting",
+    "cap_geometry": Effect(  # bending and shear of the wall, and the springs of the fitting
         models=("solid",),
         switch="end",
         off=(End.SLIDING,),
     ),
-    "twist": Effect(
-        energy="shear r tau of the wall, and threads turned by R tau",
+    "twist": Effect(  # shear r tau of the wall, and threads turned by R tau
         models=("cylinder", "cell"),
         switch="twist",
         off=(Twist.HELD,),
     ),
-    "compressibility": Effect(
-        energy="- P^2 / (2 kappa)",
+    "compressibility": Effect(  # - P^2 / (2 kappa)
         models=("solid", "cell"),
         switch="volume",
         off=(Volume.INCOMPRESSIBLE,),
     ),
-    "discrete_threads": Effect(
-        energy="that of the threads on single lines, not spread over their layer",
+    "discrete_threads": Effect(  # that of the threads on single lines, not spread over their layer
         models=("cell",),
         switch="layers",
         off=(Layers.SMEARED,),

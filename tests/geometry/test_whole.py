@@ -85,9 +85,6 @@ def test_threads_have_the_length_of_their_helix(muscle, model):
         for _ in range(muscle.braid.threads)
     ]
     assert sorted(length for length, _ in model[1]) == pytest.approx(helices, rel=1e-6)
-    for layer in range(len(muscle.layer_radii)):
-        threads = muscle.braid.threads
-        assert whole.thread_length(muscle, layer) == pytest.approx(helices[layer * threads])
 
 
 def test_threads_stay_on_their_helix(muscle, model):

@@ -17,10 +17,9 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from solver.status import StateStatus
-from workflow.data.reference import SMALL, ForceMap
+from workflow.data.reference import ForceMap, is_small, largest_force, relative_deviation
 
 CONTRACTIONS = (0.0, 0.05, 0.1, 0.15, 0.2)
-DENSE = np.linspace(0, 0.2, 201)  # contractions among which a map has its largest force
 RULE = "pchip"  # the interpolation of the rule
 ALL = "all"  # in place of a pressure: the mean over all states of all pressures
 GOOD = StateStatus.CONVERGED.value
@@ -98,8 +97,7 @@ def states(found: ForceMap, force: xr.DataArray, status: xr.DataArray) -> pd.Dat
     for pressure in force.pressure.values:
         expected = found.force(CONTRACTIONS, float(pressure))
         value = ours.sel(pressure=pressure).to_numpy()
-        largest = largest_force(found, float(pressure))
-        small = expected <= SMALL * largest
+        small = is_small(found, CONTRACTIONS, float(pressure))
         why = np.where(small, "small reference", "")
         why = np.where(np.isfinite(value), why, "not solved")
         why = np.where(np.isfinite(expected), why, "outside the map")
@@ -108,18 +106,12 @@ def states(found: ForceMap, force: xr.DataArray, status: xr.DataArray) -> pd.Dat
             "contraction": CONTRACTIONS,
             "force": value,
             "reference": expected,
-            RELATIVE: (value - expected) / np.where(small, np.nan, np.abs(expected)),
-            SHARE: (value - expected) / largest,
+            RELATIVE: relative_deviation(found, CONTRACTIONS, float(pressure), value),
+            SHARE: (value - expected) / largest_force(found, float(pressure)),
             "left_out": why,
         }
         frames.append(pd.DataFrame(rows))
     return pd.concat(frames, ignore_index=True)
-
-
-def largest_force(found: ForceMap, pressure: float) -> float:
-    """Largest force of a map at a pressure, contractions 0 to 20 %; NaN if it has none [N]."""
-    force = found.force(DENSE, pressure)
-    return float(np.nanmax(force)) if np.isfinite(force).any() else np.nan
 
 
 def summary(rows: pd.DataFrame) -> dict[str, float]:

@@ -23,6 +23,7 @@ FOLDER = Path(__file__).parents[2] / "config" / "reference"
 DATA = ("config/reference/*.csv",)
 NOMINAL_LENGTH = 300.0  # mm, of the muscle that was measured
 SMALL = 0.1  # share of a curve's largest force below which a relative deviation means nothing
+DENSE = np.linspace(0, 0.2, 201)  # contractions among which a map has its largest force
 SAME = 1e-9  # two pressures [MPa] or contractions this close are one
 
 Points = NDArray[np.float64]  # (point, 3): pressure [MPa], contraction [1], force [N]
@@ -156,16 +157,21 @@ def of_muscles(names: Mapping[str, Iterable[str]]) -> dict[str, dict[str, ForceM
 def relative_deviation(
     found: ForceMap, contraction: ArrayLike, pressure: float, force: ArrayLike
 ) -> NDArray[np.float64]:
-    """(F - Fref) / Fref along a curve of constant pressure.
-
-    NaN outside the map and where Fref is less than a tenth of its largest value on the curve, as a
-    ratio to a small force says nothing.
-    """
+    """(F - Fref) / |Fref| along a curve of constant pressure; NaN outside the map and if small."""
     expected = found.force(contraction, pressure)
-    if not np.isfinite(expected).any():
-        return expected
-    meaningful = expected > SMALL * np.nanmax(np.abs(expected))
-    return (np.asarray(force, dtype=float) - expected) / np.where(meaningful, expected, np.nan)
+    small = is_small(found, contraction, pressure)
+    return (np.asarray(force, dtype=float) - expected) / np.where(small, np.nan, np.abs(expected))
+
+
+def is_small(found: ForceMap, contraction: ArrayLike, pressure: float) -> NDArray[np.bool_]:
+    """Where a map is at most a tenth of its largest force: a ratio to that says nothing."""
+    return found.force(contraction, pressure) <= SMALL * largest_force(found, pressure)
+
+
+def largest_force(found: ForceMap, pressure: float) -> float:
+    """Largest force of a map at a pressure, contractions 0 to 20 %; NaN if it has none [N]."""
+    force = found.force(DENSE, pressure)
+    return float(np.nanmax(force)) if np.isfinite(force).any() else np.nan
 
 
 def _rows(file: str) -> list[dict[str, str]]:

@@ -28,7 +28,7 @@ FILE = Path(__file__).with_suffix(".csv")
 DATA = ("workflow/plan/mesh_error.csv",)
 SETTINGS = ("model", "end", "cap_step", "growth", "body_step", "rows")
 COLUMNS = (*SETTINGS, "refinement", "force_error", "diameter_error", "curves", "worst")
-PART = {"membrane": "meridian", "solid": "section"}
+PART = {"membrane": "meridian", "solid": "section"}  # of the numerics, that is the mesh
 ERRORS = {"force": "force_error", "inner_diameter_inflated": "diameter_error"}
 
 

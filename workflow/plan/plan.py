@@ -19,7 +19,6 @@ from workflow.study.study import Study, Variant
 
 FIELDS = {"stress", "deformed_shape"}
 ZERO_FORCE = {"threshold_pressure", "free_contraction"}
-SUFFIX = {"membrane": "mesh", "solid": "msh", "cell": "mesh"}  # of the mesh file, by model
 
 
 @dataclass(frozen=True, order=True)

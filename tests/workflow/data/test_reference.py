@@ -72,3 +72,13 @@ def test_a_single_point_is_no_curve(maps):
     assert found[0] == pytest.approx(54.9)
     assert np.isnan(found[1])
     assert maps["martens2017"].force(4 / 300, 0.065).shape == ()
+
+
+def test_a_small_force_is_small_whatever_else_is_asked():
+    """The largest force is that of the map, not of the contractions that are asked for."""
+    found = reference.musclesim()
+    grid = np.linspace(0, 0.2, 5)
+    small = grid[reference.is_small(found, grid, 0.1)]
+    assert len(small)
+    force = found.force(small, 0.1)
+    assert np.isnan(reference.relative_deviation(found, small, 0.1, 1.1 * force)).all()

@@ -35,7 +35,6 @@ from workflow.analyses.accuracy.settings import (
     FAMILY,
     LARGEST,
     MUSCLE,
-    PART,
     PRESSURE,
     STEP,
     STEPS,
@@ -44,6 +43,7 @@ from workflow.analyses.accuracy.settings import (
 )
 from workflow.analyses.analysis import Solved, StudyCase
 from workflow.plan.effect_costs import MESHES
+from workflow.plan.mesh_error import PART
 from workflow.plan.plan import plan
 from workflow.study.study import Study
 

@@ -29,4 +29,3 @@ CELLS = {  # few, as they are dear; their error is nearly all that they have no 
 }
 STEPS = (0.1, 0.05, 0.02, 0.005)  # of contraction, beside STEP
 TOLERANCES = tuple(10.0**-k for k in range(3, 11))
-PART = {"membrane": "meridian", "solid": "section"}  # of the numerics, that is the mesh

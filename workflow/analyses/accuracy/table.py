@@ -30,9 +30,10 @@ from workflow.analyses.accuracy.errors import (
     pair_error,
     share,
 )
-from workflow.analyses.accuracy.settings import PART, PRESSURE, STEP
+from workflow.analyses.accuracy.settings import PRESSURE, STEP
 from workflow.analyses.analysis import Solved
 from workflow.data import deviation, reference
+from workflow.plan.mesh_error import PART
 
 FULLEST = "solid"
 
