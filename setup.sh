@@ -115,10 +115,21 @@ $("${PYTHON:-python3}" -V 2>&1 || true). Install one and name it:
     wanted_stamp >"$STAMP"
 }
 
+# The command of this checkout, from whatever folder it is called; -P keeps that folder's modules out.
+write_command() {
+    cat >.venv/bin/muscle <<'END'
+#!/bin/sh
+bin=$(dirname -- "$(readlink -f -- "$0")")
+PYTHONPATH=$bin/../.. exec "$bin/python" -P -m workflow "$@"
+END
+    chmod +x .venv/bin/muscle
+}
+
 LIBRARIES=$(PATH=$PATH:/usr/sbin:/sbin ldconfig -p)
 mapfile -t missing < <(missing_packages)
 [[ ${#missing[@]} == 0 ]] || install_packages "${missing[@]}"
 is_complete || install_python_packages
+[[ -x .venv/bin/muscle ]] || write_command
 say "Everything is installed. Next:
     .venv/bin/snakemake --cores 2 smoke    a small study, for a first look
     .venv/bin/snakemake --cores 2          the whole study

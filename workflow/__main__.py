@@ -1,7 +1,8 @@
-"""The programs of the workflow: ``python -m workflow PROGRAM``.
+"""The programs of the workflow: ``muscle PROGRAM``, or ``python -m workflow PROGRAM``.
 
-Every rule of Snakemake calls one of these or those of geometry and solver. Whatever is wrong with
-the input ends with status 1 and a message of a few lines.
+People call run, explain, list, check and retry; every rule of Snakemake calls one of the others, or
+those of geometry and solver. Whatever is wrong with the input ends with status 1 and a message of a
+few lines.
 """
 
 import argparse
@@ -23,7 +24,7 @@ def main(arguments: list[str] | None = None) -> int:
     if name not in names():
         _parser().parse_args(given or ["--help"])
     program = import_module(f"workflow.programs.{name}")
-    parser = argparse.ArgumentParser(prog=f"python -m workflow {name}", description=program.__doc__)
+    parser = argparse.ArgumentParser(prog=f"muscle {name}", description=program.__doc__)
     program.add_arguments(parser)
     try:
         return int(program.run(parser.parse_args(given[1:])))
@@ -39,7 +40,7 @@ def names() -> list[str]:
 
 def _parser() -> argparse.ArgumentParser:
     """What answers to --help and to a name that is none."""
-    parser = argparse.ArgumentParser(prog="python -m workflow", description=__doc__)
+    parser = argparse.ArgumentParser(prog="muscle", description=__doc__)
     programs = parser.add_subparsers(required=True, metavar="PROGRAM")
     for name in names():
         text = ast.get_docstring(ast.parse((FOLDER / f"{name}.py").read_bytes())) or ""

@@ -6,24 +6,30 @@
 # What a job takes from it is one parameter of its rule, so a job runs again when that changes and not
 # when the file is reordered, commented or touched. Sources are inputs, compared by content.
 import json
+import os
 import re
 import shlex
 import sys
 from pathlib import Path
+
+CHECKOUT = workflow.basedir
+sys.path.insert(0, CHECKOUT)
 
 from solver.case import MODELS, digest
 from workflow.analyses import analysis
 from workflow.data import paraview
 from workflow.figures.figure import drawn
 from workflow.plan.plan import plan
-from workflow.run.sources import sources
+from workflow.run import sources as closure
 from workflow.study.errors import StudyError
 from workflow.study.study import load
 
-# Programs run with the Python of Snakemake itself, whether or not its environment is activated, and
-# on one core each: there are as many at a time as there are cores.
+# Programs are those of this checkout, from whatever folder they are run (and whatever that folder
+# has of the same name). They run with the Python of Snakemake itself, whether or not its environment
+# is activated, and on one core each: there are as many at a time as there are cores.
 PROGRAMS = shlex.quote(str(Path(sys.executable).parent))
-shell.prefix(f"set -euo pipefail; export PATH={PROGRAMS}:$PATH OPENBLAS_NUM_THREADS=1; ")
+SETTINGS = f"PATH={PROGRAMS}:$PATH PYTHONPATH={shlex.quote(CHECKOUT)} PYTHONSAFEPATH=1"
+shell.prefix(f"set -euo pipefail; export {SETTINGS} OPENBLAS_NUM_THREADS=1; ")
 
 STUDY = config.get("study", "config/config.yaml")
 
@@ -54,9 +60,19 @@ wildcard_constraints:
     figure="|".join(map(re.escape, filter(drawn, PLAN.study.scenes))) or "none",
 
 
+def of_checkout(file):
+    """A file of this checkout, from the folder of the run."""
+    return os.path.relpath(os.path.join(CHECKOUT, file))
+
+
+def sources(*modules):
+    """What some modules are made of."""
+    return [of_checkout(file) for file in closure.sources(*modules)]
+
+
 def matching(*patterns, without=()):
-    """Files of some patterns, except those named."""
-    found = {str(path) for pattern in patterns for path in Path().glob(pattern)}
+    """Files of this checkout by some patterns, except those named."""
+    found = {of_checkout(path) for pattern in patterns for path in Path(CHECKOUT).glob(pattern)}
     return sorted(found.difference(without))
 
 
@@ -68,7 +84,8 @@ def mesh_sources(wildcards):
     """All of geometry/ but what makes other kinds of files."""
     kind = json.loads(spec_of_mesh(wildcards))["kind"]
     kinds = ("meridian", "section", "cell", "whole")
-    return matching("geometry/*.py", without=[f"geometry/{k}.py" for k in kinds if k != kind])
+    others = [of_checkout(f"geometry/{other}.py") for other in kinds if other != kind]
+    return matching("geometry/*.py", without=others)
 
 
 STUDIED = {}  # cases of the studies that are asked for, by key
@@ -115,7 +132,9 @@ def solver_sources(wildcards):
     ]
     read = ("muscle", "refusal", "cell", "seal", "attempt", "files")
     geometry = [f"geometry/{name}.py" for name in read]
-    return matching("solver/*.py", *geometry, *edp, without=[*others, "solver/edp/check.edp"])
+    return matching(
+        "solver/*.py", *geometry, *edp, without=[*others, of_checkout("solver/edp/check.edp")]
+    )
 
 
 def figures():

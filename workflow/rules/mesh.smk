@@ -30,7 +30,10 @@ rule mesh:
 
 rule muscle:
     input:
-        sources=matching("geometry/*.py", without=["geometry/meridian.py", "geometry/section.py"]),
+        sources=matching(
+            "geometry/*.py",
+            without=[of_checkout(f"geometry/{kind}.py") for kind in ("meridian", "section")],
+        ),
     output:
         "results/muscles/{muscle}.step",
     log:

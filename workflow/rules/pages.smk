@@ -43,8 +43,8 @@ def has_claims():
 
 def caption_of(page):
     """What a page shows; a new figure may have none yet."""
-    own = Path(f"workflow/report/{page}.rst")
-    return own if own.exists() else Path("workflow/report/unnamed.rst")
+    own = Path(of_checkout(f"workflow/report/{page}.rst"))
+    return own if own.exists() else own.with_name("unnamed.rst")
 
 
 PAGES = page_sources()

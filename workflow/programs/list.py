@@ -1,0 +1,52 @@
+"""List what a study has: its muscles, its scenes, and the analyses that can be asked for."""
+
+import argparse
+from collections import Counter
+from collections.abc import Iterator
+
+from workflow.analyses import analysis
+from workflow.data import records
+from workflow.plan.plan import Plan
+from workflow.programs import add_study, plan_of
+from workflow.study.study import StudiedMuscle
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What it is told."""
+    add_study(parser)
+
+
+def run(given: argparse.Namespace) -> int:
+    """Print it."""
+    for line in lines(plan_of(given)):
+        print(line)
+    return 0
+
+
+def lines(plan: Plan) -> Iterator[str]:
+    """The text, line by line."""
+    yield "muscles"
+    for name, muscle in plan.study.muscles.items():
+        yield f"  {name:24} {_described(muscle)}"
+    yield "scenes"
+    for name, scene in plan.study.scenes.items():
+        yield f"  {name:24} {scene.path or 'shows muscles'}; {_state(plan, name)}"
+    yield "analyses (targets of run)"
+    for name in analysis.FIGURES:
+        yield f"  {name}"
+
+
+def _described(muscle: StudiedMuscle) -> str:
+    shape, braid = muscle.muscle, muscle.muscle.braid
+    tube = f"bore {shape.inner_diameter:g} mm, wall {shape.wall_thickness:g}, L {shape.length:g}"
+    net = f"{braid.threads} threads a layer, lead {braid.lead:g} mm" if braid else "no threads"
+    return f"{tube}, {net}, {muscle.material}"
+
+
+def _state(plan: Plan, scene: str) -> str:
+    """How many of a scene's cases have which status."""
+    keys = sorted(set(plan.scenes.get(scene, {}).values()))
+    if not keys:
+        return "no cases"
+    found = Counter(records.status(key, plan.cases[key].label) for key in keys)
+    return ", ".join(f"{count} {status}" for status, count in sorted(found.items()))
