@@ -37,7 +37,7 @@ ANY_RUBBER = {"c10": 1, "c01": 0} | INCOMPRESSIBLE
 ANY_THREAD = {"stiffness": 1}
 UNREAD: dict[str, dict[str, dict[str, float]]] = {  # by model, what it leaves out of the identity
     "geometric": {"muscle": {"wall_thickness": 1e9, "length": 1.0}},
-    "cylinder": {"muscle": {"length": 1.0}, "rubber": INCOMPRESSIBLE},
+    "cylinder": {"rubber": INCOMPRESSIBLE},
     "membrane": {"rubber": INCOMPRESSIBLE},
 }
 
@@ -109,8 +109,6 @@ class Case:
         if braided and self.effects.stretch is Stretch.ELASTIC:
             assert self.thread is not None  # see __post_init__
             values["thread"] = asdict(self.thread)
-        if self.model == "cylinder":
-            del muscle["length"]
         values["numerics"] = {name: asdict(getattr(self.numerics, name)) for name in self._read()}
         if self.fields_at:
             values["fields_at"] = self.fields_at

@@ -5,45 +5,45 @@ for the unknowns (radius, axial stretch, twist; those that the case has) from th
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import root
+from scipy.optimize import minimize_scalar, root
 
 from solver.case import Case
 from solver.cylinder_mechanics import Cylinder, State
 from solver.effects import Rubber
-from solver.load_path import Control, Due, Waypoint
+from solver.judge import judged
+from solver.load_path import Control, Waypoint
 from solver.record import Solution, unreached
-from solver.status import CaseStatus, case_status, state_status
+from solver.zero_force import Finder, Point, Search
 
 Array = NDArray[np.float64]
 SHARP = 1e-3  # width of slackening, as a share, that counts as none
 SMALLEST_STEP = 1 / 1024  # share of the way to a waypoint
 LONGEST_STEP = 0.25  # of any unknown; they have no unit
+ARC_STEP, ARC_STEPS = 0.02, 500  # along a branch, in the unknowns
+NAMES = {  # of controls, as solver/edp/newton.idp writes them
+    Control.CONTRACTION: "contraction",
+    Control.PRESSURE: "pressure [MPa]",
+    Control.FORCE: "force [N]",
+    Control.VOLUME: "volume [mm3]",
+}
+REACH = 6.0  # r / R_i at which a tube counts as inflating without bound
 
 
 def solve(case: Case) -> Solution:
     """The curve of a case."""
     cylinder = Cylinder(case)
     states = unreached(case.path.states)
-    reason = ""
+    count = len(case.path.stops)
     for way in case.path.ways(rubber=case.effects.rubber is not Rubber.NONE):
-        reason = _follow(cylinder, way, states)
-        if not reason:
+        reason, searched = _follow(cylinder, way, states)
+        if np.isfinite(states["force"][:count]).all():
             break
-    checks = states | {"unstable_modes": np.zeros(case.path.states)}
-    status = state_status(case.path.kind, checks)
-    states["stiffness"][:] = np.nan  # by lz; only its sign means something without a length
-    outcome = case_status(status)
-    return Solution(
-        status=outcome,
-        reason="" if outcome is CaseStatus.CONVERGED else reason,
-        states=states,
-        state_status=status,
-        unknowns=cylinder.unknowns,
-    )
+    return judged(case, states, reason=reason, searched=searched, unknowns=cylinder.unknowns)
 
 
 def _control(cylinder: Cylinder, kind: Control, state: State) -> float:
@@ -67,68 +67,96 @@ def _scale(cylinder: Cylinder, kind: Control) -> float:
     }[kind]
 
 
-def _follow(cylinder: Cylinder, way: list[Waypoint], states: dict[str, Array]) -> str:
-    """Record the stops of a way; where it could not be followed to its end, say where it ended."""
-    at = cylinder.start
-    aside_done, before, reason = False, set[bool](), ""
+def _follow(
+    cylinder: Cylinder, way: list[Waypoint], states: dict[str, Array]
+) -> tuple[str, tuple[float, float] | None]:
+    """Record the stops of a way and the state of zero force.
+
+    Gives where the way ended if that was before its end, and where zero force was looked for.
+    """
+    case, at, reason = cylinder.case, cylinder.start, ""
+    curve = _Curve(cylinder) if case.path.zero_force else None
     for point in way:
-        aside = point.due is not Due.ALWAYS
-        if reason and point.due is not Due.AT_LAST:
-            continue
-        if aside and (aside_done or not _is_due(cylinder, point, at, before)):
-            continue
         kinds = point.first, point.second
         targets = np.array([point.first_target, point.second_target])
         scales = np.array([_scale(cylinder, kind) for kind in kinds])
-        found = _walk(cylinder, kinds, targets / scales, at)
-        aside_done |= aside
-        if found is None:
-            last = cylinder.state(at)
-            reason = reason or (
-                f"no state found beyond contraction {1 - last.lz:g}, pressure {last.pressure:g} "
-                f"MPa, force {last.force:g} N"
-            )
-            continue
-        at = found
+        at, reached = _walk(cylinder, kinds, targets / scales, at)
+        if curve is not None and curve.holds(at):
+            curve.points.append(curve.point(at))
+        if not reached:
+            reason = _limit(cylinder, kinds, targets / scales, at)
+            break
         if point.stop is not None:
             _record(cylinder, states, point.stop, at)
-            before.add(bool(cylinder.state(at).force > 0))
-    return reason
+    if curve is None or not curve.points:
+        return reason, None
+    finder = Finder(curve.search, curve.points, curve.walk, curve.polish)
+    found = finder.find()
+    if found is not None:
+        _record(cylinder, states, len(case.path.stops), found.position)
+    return reason, finder.range
 
 
-def _is_due(cylinder: Cylinder, point: Waypoint, at: Array, before: set[bool]) -> bool:
-    """Whether to look for the state of zero force from here; ``before`` says where it pulled."""
-    if point.due is Due.AT_LAST:
-        return True in before
-    pulls = cylinder.state(at).force > 0
-    swept = next(c for c in (Control.CONTRACTION, Control.PRESSURE) if c is not point.first)
-    return pulls == (point.due is Due.PULLS) and (
-        (not pulls) in before or _force_slope(cylinder, at, swept) > 0
-    )
+class _Curve:
+    """The curve of a case as solver.zero_force.Finder asks for it."""
+
+    def __init__(self, cylinder: Cylinder) -> None:
+        self.cylinder = cylinder
+        self.search = Search.of(cylinder.case)
+        self.points: list[Point[Array]] = []
+
+    def holds(self, at: Array) -> bool:
+        """Whether a state is on the curve."""
+        held = self.search.held
+        value = _control(self.cylinder, held, self.cylinder.state(at))
+        return abs(value - self.search.still / _scale(self.cylinder, held)) < 1e-9
+
+    def point(self, at: Array) -> Point[Array]:
+        """A state with what the search needs of it."""
+        state, swept = self.cylinder.state(at), self.search.swept
+        over_pressure = swept is Control.PRESSURE
+        unloaded = max(abs(state.lz - 1), abs(state.pressure) / self.cylinder.modulus) < 1e-9
+        return Point(
+            x=state.pressure if over_pressure else 1 - state.lz,
+            g=state.force if over_pressure else -state.force,
+            slope=_force_slope(self.cylinder, at, swept),
+            unloaded=unloaded,
+            position=at,
+        )
+
+    def walk(self, start: Point[Array], x: float) -> Point[Array]:
+        """To x; the last state on the way if that ends before."""
+        goal = [
+            value / _scale(self.cylinder, kind)
+            for kind, value in ((self.search.held, self.search.still), (self.search.swept, x))
+        ]
+        kinds = self.search.held, self.search.swept
+        return self.point(_walk(self.cylinder, kinds, np.array(goal), start.position)[0])
+
+    def polish(self, start: Point[Array]) -> Point[Array] | None:
+        """To no force."""
+        held = self.search.still / _scale(self.cylinder, self.search.held)
+        kinds = self.search.held, Control.FORCE
+        at, reached = _walk(self.cylinder, kinds, np.array([held, 0.0]), start.position)
+        return self.point(at) if reached else None
 
 
 def _walk(
     cylinder: Cylinder, kinds: tuple[Control, Control], goal: Array, at: Array
-) -> Array | None:
+) -> tuple[Array, bool]:
     """From some unknowns to those whose controls are at ``goal``, in as many steps as needed.
 
-    No step is long: a far root may be of another branch, as when a balloon snaps.
+    Gives the last unknowns on the way, and whether it came to its end. No step is long: a far root
+    may be of another branch, as when a balloon snaps.
     """
-    torque = cylinder.modulus * cylinder.inner**3
-
-    def values(x: Array) -> Array:
-        state = cylinder.state(x)
-        found = [_control(cylinder, kind, state) for kind in kinds]
-        return np.array(found + [state.torque / torque] * cylinder.free)
-
-    start = values(at)
+    start = _values(cylinder, kinds, at)
     end = np.append(goal, np.zeros(cylinder.free))
     done, step = 0.0, 1.0
     while done < 1:
         share = min(done + step, 1.0)
         target = start + share * (end - start)
         with np.errstate(all="ignore"):
-            found = root(lambda x, t=target: values(x) - t, at, tol=1e-13)
+            found = root(lambda x, t=target: _values(cylinder, kinds, x) - t, at, tol=1e-13)
         positive = found.x[1] > 0 and (cylinder.rigid or found.x[0] > 0)
         near = np.max(np.abs(found.x - at)) < LONGEST_STEP
         if np.max(np.abs(found.fun)) < 1e-11 and positive and near:
@@ -136,8 +164,70 @@ def _walk(
         else:
             step /= 2
             if step < SMALLEST_STEP:
-                return None
-    return at
+                return at, False
+    return at, True
+
+
+def _values(cylinder: Cylinder, kinds: tuple[Control, Control], x: Array) -> Array:
+    """The controls at some unknowns, then the torque where twist is free; as shares."""
+    state = cylinder.state(x)
+    torque = state.torque / (cylinder.modulus * cylinder.inner**3)
+    return np.array([_control(cylinder, k, state) for k in kinds] + [torque] * cylinder.free)
+
+
+def _limit(cylinder: Cylinder, kinds: tuple[Control, Control], goal: Array, at: Array) -> str:
+    """Why there is no way from the unknowns ``at`` to the controls ``goal``.
+
+    The branch is followed by its length: where the control that is moved has an extremum, it is
+    named with its value.
+    """
+    here = _values(cylinder, kinds, at)
+    moving = int(np.argmax(np.abs(goal - here[:2])))
+    sense = math.copysign(1.0, goal[moving] - here[moving])
+    held = [k for k in range(len(here)) if k != moving]
+    unit = sense * _scale(cylinder, kinds[moving])
+
+    def along(start: Array, tangent: Array, length: float) -> Array | None:
+        """The unknowns at a length of the branch from ``start``."""
+
+        def off(x: Array) -> Array:
+            return np.append(
+                (_values(cylinder, kinds, x) - here)[held], tangent @ (x - start) - length
+            )
+
+        with np.errstate(all="ignore"):
+            found = root(off, start + length * tangent, tol=1e-13)
+        near = np.max(np.abs(found.x - start)) < 2 * ARC_STEP
+        return found.x if np.max(np.abs(found.fun)) < 1e-10 and near else None
+
+    def moved(x: Array | None) -> float:
+        """The moving control, so that it rises towards its goal."""
+        return -math.inf if x is None else sense * float(_values(cylinder, kinds, x)[moving])
+
+    last, before = at, None
+    for _ in range(ARC_STEPS):
+        rows = _derivatives(lambda x: _values(cylinder, kinds, x), at)
+        if not np.isfinite(rows).all():
+            break
+        tangent = np.linalg.svd(rows[held])[2][-1]  # along it the held controls do not change
+        tangent *= np.sign(sense * rows[moving] @ tangent if before is None else before @ tangent)
+        there = along(at, tangent, ARC_STEP)
+        if there is None:
+            break
+        if moved(there) < moved(at):
+            ends = -ARC_STEP, ARC_STEP
+            most = minimize_scalar(
+                lambda s, x=at, t=tangent: -moved(along(x, t, s)), bounds=ends, method="bounded"
+            )
+            return f"fold of the {NAMES[kinds[moving]]} at {-most.fun * unit:g}"
+        at, before = there, tangent
+        if cylinder.state(at).r > REACH * cylinder.inner:
+            return f"asymptote of the {NAMES[kinds[moving]]} at {moved(at) * unit:g}"
+    state = cylinder.state(last)
+    return (
+        f"no state found beyond contraction {1 - state.lz:g}, pressure {state.pressure:g} "
+        f"MPa, force {state.force:g} N"
+    )
 
 
 def _record(cylinder: Cylinder, states: dict[str, Array], stop: int, at: Array) -> None:
@@ -157,10 +247,13 @@ def _record(cylinder: Cylinder, states: dict[str, Array], stop: int, at: Array) 
         "outer_diameter": 2 * outer,
         "twist": state.twist,
         "torque": state.torque,
+        "volume": math.pi * state.r**2 * state.lz * muscle.length,
+        "energy": cylinder.energy(state) * muscle.length,
         "min_det_f": 1.0,  # incompressible by construction
         "min_det_f_nodes": 1.0,
         "margin": min(state.lz, state.r / cylinder.inner),
-        "stiffness": _force_slope(cylinder, at, Control.CONTRACTION),
+        "stiffness": _force_slope(cylinder, at, Control.CONTRACTION) / muscle.length,
+        "force_by_pressure": _force_slope(cylinder, at, Control.PRESSURE),
     }
     if cylinder.case.effects.rubber is not Rubber.NONE:
         values["rubber_stretch_max"] = cylinder.rubber_stretch(state)
@@ -188,24 +281,29 @@ def _smoothing(cylinder: Cylinder, at: Array) -> tuple[float, float]:
     for share in (SHARP, 2 * SHARP):
         slack = replace(case.numerics.slack, width=share * case.numerics.slack.width)
         sharp = Cylinder(replace(case, numerics=replace(case.numerics, slack=slack)))
-        found = _walk(sharp, kinds, goal, at)
-        forces.append(math.nan if found is None else sharp.state(found).force)
+        found, reached = _walk(sharp, kinds, goal, at)
+        forces.append(sharp.state(found).force if reached else math.nan)
     width = case.numerics.slack.width_of(case.thread)
     return here.force - forces[0], (forces[1] - forces[0]) / (SHARP * width)
 
 
 def _force_slope(cylinder: Cylinder, at: Array, along: Control) -> float:
-    """dF/dlz at fixed pressure, or dF/dp at fixed lz; without torque; by central differences."""
-    step = 1e-6
+    """dF/dlz at fixed pressure, or dF/dp at fixed lz; without torque."""
 
     def loads(x: Array) -> Array:
         state = cylinder.state(x)
         return np.array([state.force, state.lz, state.pressure] + [state.torque] * cylinder.free)
 
-    columns = [
-        (loads(at + shift) - loads(at - shift)) / (2 * step) for shift in step * np.eye(len(at))
-    ]
-    force, *controls = np.array(columns).T
+    force, *controls = _derivatives(loads, at)
     moved = np.zeros(len(at))
     moved[0 if along is Control.CONTRACTION else 1] = 1
     return float(force @ np.linalg.solve(np.array(controls), moved))
+
+
+def _derivatives(values: Callable[[Array], Array], at: Array) -> Array:
+    """Of several values (rows) by every unknown, by central differences."""
+    step = 1e-6
+    columns = [
+        (values(at + shift) - values(at - shift)) / (2 * step) for shift in step * np.eye(len(at))
+    ]
+    return np.array(columns).T

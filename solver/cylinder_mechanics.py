@@ -17,9 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from geometry.muscle import Braid
 from solver import thread_law
 from solver.case import Case
 from solver.effects import Rubber, Stretch, Twist, Wall
+from solver.material import Thread
 
 Array = NDArray[np.float64]
 WALL_POINTS = 16  # Gauss points through the wall: exact to rounding for any wall that is built
@@ -95,6 +97,21 @@ class Cylinder:
         largest = half + np.sqrt(np.maximum(half**2 - a * b, 0))
         return float(np.sqrt(max(np.max(largest), np.max(1 / (a * b)))))
 
+    def energy(self, state: State) -> float:
+        """Strain energy per reference length [N mm/mm]."""
+        a, b = self._hoop(self.radii, state.r, state.lz) ** 2, state.lz**2
+        shear = (self.radii * state.twist) ** 2
+        i1 = a + b + 1 / (a * b) + a * shear
+        i2 = 1 / a + 1 / b + a * b + shear / b
+        rubber = self.case.rubber
+        total = float(np.sum(self.measure * (rubber.c10 * (i1 - 3) + rubber.c01 * (i2 - 3))))
+        if len(self.layers) and not self.rigid:
+            braid, thread, width = self._threads()
+            share = thread_law.energy(self.case.effects.threads, width, self.thread_stretch(state))
+            length = braid.threads * thread.stiffness / np.cos(self.angles)
+            total += float(np.sum(length * share))
+        return total
+
     def _hoop(self, radii: Array, r: float, lz: float) -> Array:
         """Hoop stretch at reference radii."""
         return np.asarray(np.sqrt(r**2 + (radii**2 - self.inner**2) / lz) / radii)
@@ -129,13 +146,17 @@ class Cylinder:
 
     def _tension(self, stretch: Array) -> Array:
         """Derivative of each layer's energy by lf^2 [N]."""
-        braid, thread = self.case.muscle.braid, self.case.thread
-        assert braid is not None
-        assert thread is not None
-        width = self.case.numerics.slack.width_of(thread)
+        braid, thread, width = self._threads()
         share = thread_law.tension(self.case.effects.threads, width, stretch)
         total = braid.threads * thread.stiffness
         return np.asarray(total * share / (2 * stretch * np.cos(self.angles)))
+
+    def _threads(self) -> tuple[Braid, Thread, float]:
+        """The braid, its thread, and the strain over which that slackens."""
+        braid, thread = self.case.muscle.braid, self.case.thread
+        assert braid is not None
+        assert thread is not None
+        return braid, thread, self.case.numerics.slack.width_of(thread)
 
     def _net(self, lz: float) -> tuple[float, float]:
         """Radius that the binding layer of a rigid net allows, and its derivative by lz."""

@@ -5,8 +5,7 @@ its stops; between them nothing is skipped, because hyperelastic states do not d
 Newton's method does.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
 
 from geometry.refusal import is_number
@@ -45,19 +44,6 @@ SWEPT = {
 CONTRACTION_LIMITS = (-0.5, 0.6)
 
 
-class Due(IntEnum):
-    """When a waypoint is gone to; the numbers are those of solver/edp/output.idp.
-
-    All but the first mean once. For the two in the middle the force has to have had the other sign
-    at a stop before, or to grow with pressure and fall with contraction.
-    """
-
-    ALWAYS = 0
-    PULLS_NO_MORE = 1  # where the force is not positive
-    PULLS = 2  # where the force is positive
-    AT_LAST = 3  # where it was positive at a stop before; also after a way that has ended early
-
-
 @dataclass(frozen=True)
 class Waypoint:
     """A state on the way: two controls and their targets. ``stop`` is its place in the record."""
@@ -67,16 +53,16 @@ class Waypoint:
     second: Control
     second_target: float
     stop: int | None = None
-    due: Due = Due.ALWAYS
 
 
 @dataclass(frozen=True, kw_only=True)
 class LoadPath:
     """One curve: a control held, another swept through ``stops``.
 
-    With ``zero_force`` the state of zero force on the curve is solved for as well (on an
-    isometric path the threshold pressure, on an isobaric one the free contraction); it is the
-    record's last state. Units by kind: contraction as a fraction, pressure in MPa, load in N.
+    With ``zero_force`` the state of zero force on the curve is looked for as well (on an
+    isometric path the threshold pressure, on an isobaric one the free contraction;
+    solver/zero_force.py); it is the record's last state. Units by kind: contraction as a
+    fraction, pressure in MPa, load in N.
 
     Raises
     ------
@@ -127,24 +113,11 @@ class LoadPath:
             return [self._isometric_falling(), self._isometric_rising()]
         return [self._isotonic_rising() if rubber else self._isotonic_falling()]
 
-    def _with_zero_force(self, way: Sequence[Waypoint], due: Due) -> list[Waypoint]:
-        """A way that turns aside to the state without force, if that is asked for.
-
-        It does so from the first stop behind the change of sign: the force of a soft muscle has
-        folds and more than one zero, and from farther away another one may be found.
-        """
-        if not self.zero_force:
-            return list(way)
-        held = HELD[self.kind]
-        zero = Waypoint(held, self.held, Control.FORCE, 0.0, stop=len(self.stops), due=due)
-        found: list[Waypoint] = []
-        for point in way:
-            found += [point] if point.stop is None else [point, zero]
-        return [*found, replace(zero, due=Due.AT_LAST)]
-
     def _isobaric(self) -> list[Waypoint]:
         """Pressure first, then shorter from the initial length; longer before, and back."""
         way = _pressurise(self.held)
+        if self.zero_force and not way:  # the unloaded muscle is on the curve
+            way.append(Waypoint(Control.PRESSURE, 0.0, Control.CONTRACTION, 0.0))
         shorter = [(k, e) for k, e in enumerate(self.stops) if e >= 0]
         longer = [(k, e) for k, e in enumerate(self.stops) if e < 0][::-1]
         home: list[tuple[int | None, float]] = [(None, 0.0)] if longer and shorter else []
@@ -152,7 +125,7 @@ class LoadPath:
             way.append(
                 Waypoint(Control.PRESSURE, self.held, Control.CONTRACTION, contraction, stop)
             )
-        return self._with_zero_force(way, Due.PULLS_NO_MORE)
+        return way
 
     def _isometric_falling(self) -> list[Waypoint]:
         """Pressure first, then contraction, then the pressure down."""
@@ -161,8 +134,7 @@ class LoadPath:
             Waypoint(Control.CONTRACTION, self.held, Control.PRESSURE, p, stop)
             for stop, p in reversed(list(enumerate(self.stops)))
         ]
-        way = [*_pressurise(top), *self._contract(top), *down]
-        return self._with_zero_force(way, Due.PULLS_NO_MORE)
+        return [*_pressurise(top), *self._contract(top), *down]
 
     def _isometric_rising(self) -> list[Waypoint]:
         """Contraction first, then the pressure up."""
@@ -170,7 +142,11 @@ class LoadPath:
             Waypoint(Control.CONTRACTION, self.held, Control.PRESSURE, p, stop)
             for stop, p in enumerate(self.stops)
         ]
-        return self._with_zero_force([*self._contract(0.0), *up], Due.PULLS)
+        return [*self._contract(0.0), *up]
+
+    def way_from_above(self, pressure: float) -> list[Waypoint]:
+        """On an isometric path: to the held contraction at a pressure above all stops."""
+        return [*_pressurise(pressure), *self._contract(pressure)]
 
     def _contract(self, pressure: float) -> list[Waypoint]:
         """From the initial length to the held contraction, at a pressure."""

@@ -107,7 +107,8 @@ class Solution:
     Attributes
     ----------
     states : arrays of shape (state,), as in VARIABLES; NaN where not reached
-    flags, notes : of every state, beside its status; left out, there are none
+    flags, notes : of every state, beside its status; left out, there are no flags, and notes are
+        the reason where a state was not reached
     fields : state number -> name -> array, as in the layout
     log : end of the solver's output where it failed
     unknowns : what was solved for beside contraction and pressure; 0 if nothing was solved
@@ -124,9 +125,10 @@ class Solution:
     unknowns: int = 0
 
     def __post_init__(self) -> None:
-        count = len(self.state_status)
-        object.__setattr__(self, "flags", self.flags or [frozenset()] * count)
-        object.__setattr__(self, "notes", self.notes or [""] * count)
+        each = self.state_status
+        missing = [self.reason if s is StateStatus.NOT_REACHED else "" for s in each]
+        object.__setattr__(self, "flags", self.flags or [frozenset()] * len(each))
+        object.__setattr__(self, "notes", self.notes or missing)
 
 
 def unreached(count: int) -> dict[str, NDArray[np.float64]]:

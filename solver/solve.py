@@ -16,16 +16,18 @@ from geometry.seal import is_sealed, why_none
 from solver import files, freefem
 from solver.case import Case
 from solver.effects import End, Twist, Volume
-from solver.load_path import Waypoint
+from solver.judge import judged
+from solver.load_path import SWEPT, LoadPath, PathKind, Waypoint
 from solver.record import VARIABLES, Solution, unreached
 from solver.smoothing import marked
-from solver.status import CaseStatus, StateStatus, case_status, state_status
+from solver.status import CaseStatus, StateStatus
+from solver.zero_force import Search, limit_pressure
 
-LIMITS = ("fold", "asymptote", "crumpling", "overhang")  # kinds of limit that solver/edp names
 RUBBISH = (ValueError, TypeError, LookupError, ArithmeticError, csv.Error)  # unreadable output
 LARGEST_TEXT, LARGEST_ROW = 2**14, 2**12  # bytes
 LARGEST_FIELDS = 400  # bytes per byte of the mesh
 LARGEST_COUNT = 10**9
+ABOVE = (2.0, 4.0)  # times the limit pressure of the rubber
 FIELDS = {  # columns of fields_<waypoint>.txt, by model
     "membrane": {"meridian": slice(0, 4)},
     "solid": {"corners": slice(0, 4), "stress": slice(4, 8)},
@@ -62,9 +64,39 @@ def solve(
         end = _follow(case, way, mesh, log, limits, until, states, fields)
         if end.usage is not None:
             usage = end.usage if usage is None else usage + end.usage
-        if end.status is not None or np.isfinite(states["force"]).all():
+        if end.status is not None or np.isfinite(states["force"][: len(case.path.stops)]).all():
             break
-    return marked(case, _with_diameter(case, _judge(case, states, fields, end, log))), usage
+    for way in _from_above(case, states) if end.status is None else []:
+        above = _follow(case, way, mesh, log, limits, until, states, fields)
+        end = replace(end, searched=above.searched or end.searched)
+        if above.usage is not None:
+            usage = above.usage if usage is None else usage + above.usage
+        if np.isfinite(states["force"][-1]):
+            break
+    solution = judged(
+        case,
+        states,
+        ended=end.status,
+        reason=end.reason,
+        searched=end.searched,
+        unknowns=end.unknowns,
+    )
+    solution = replace(solution, fields=fields, log=freefem.tail(log) if end.status else "")
+    return marked(case, _with_diameter(case, solution)), usage
+
+
+def _from_above(case: Case, states: dict[str, NDArray[np.float64]]) -> list[list[Waypoint]]:
+    """Ways to where a muscle pulls that, at the pressures of its stops, has no state to push in.
+
+    From there its state of zero force may be found nonetheless.
+    """
+    path = case.path
+    if not (path.zero_force and path.kind is PathKind.ISOMETRIC):
+        return []
+    if not np.isnan(states["force"]).all():
+        return []
+    limit = limit_pressure(case)
+    return [path.way_from_above(max(factor * limit, path.stops[-1])) for factor in ABOVE]
 
 
 class DamagedMesh(OSError):
@@ -79,6 +111,7 @@ class _End:
     reason: str
     usage: freefem.Usage | None
     unknowns: int
+    searched: tuple[float, float] | None = None  # where a state of zero force was looked for
 
 
 def _follow(
@@ -107,12 +140,14 @@ def _follow(
             raise
         except freefem.FreeFemError as error:
             status, reason = CaseStatus.SOLVER_ERROR, str(error)
+        searched = None
         try:
             ended = files.read(work / "reason.txt", LARGEST_TEXT) or b""
             if status is None:
                 reason = freefem.readable(ended.decode(errors="replace").strip())
             unknowns = _number(work / "unknowns.txt")
             _collect(case, way, work, LARGEST_FIELDS * mesh.stat().st_size, states, fields)
+            searched = _searched(work / "zero.txt")
         except RUBBISH as error:
             status = status or CaseStatus.SOLVER_ERROR
             reason = reason or f"what FreeFEM has written cannot be read ({error})"
@@ -122,7 +157,7 @@ def _follow(
         if status is CaseStatus.SOLVER_ERROR:
             _check_disk(work.parent)
             _check_mesh(mesh)
-    return _End(status, reason, usage, unknowns)
+    return _End(status, reason, usage, unknowns, searched)
 
 
 def _run_until(
@@ -187,12 +222,18 @@ def composition(case: Case) -> str:
 def waypoint_text(case: Case, way: list[Waypoint]) -> str:
     """The file that solver/edp/output.idp reads."""
     wanted_fields = {case.path.stops.index(stop) for stop in case.fields_at}
-    lines = [str(len(way))]
+    lines = [str(len(way)), "0 0 0 0 0 0 0"]
+    if case.path.zero_force:
+        search = Search.of(case)
+        lines[1] = (
+            f"1 {search.held:d} {float(search.still)!r} {search.swept:d} "
+            f"{search.low!r} {float(search.high)!r} {search.step!r}"
+        )
     for point in way:
         wanted = 0 if point.stop is None else 2 if point.stop in wanted_fields else 1
         lines.append(
             f"{point.first:d} {float(point.first_target)!r} "
-            f"{point.second:d} {float(point.second_target)!r} {wanted} {point.due:d}"
+            f"{point.second:d} {float(point.second_target)!r} {wanted}"
         )
     return "\n".join(lines) + "\n"
 
@@ -269,13 +310,17 @@ def _collect(
     fields: dict[int, dict[str, NDArray[np.float64]]],
 ) -> None:
     """Read what FreeFEM has left in its folder, if it makes sense."""
-    found = _rows(work / "states.csv", len(way))
-    numbers = [_waypoint(row, way) for row in found]
+    found = _rows(work / "states.csv", len(way) + 1)
+    numbers = [_waypoint(row, way, case.path) for row in found]
     if len(set(numbers)) < len(numbers):
         raise ValueError("two states at one waypoint")
     for number, row in zip(numbers, found, strict=True):
-        stop = way[number].stop
+        zero = number == len(way)
+        stop = len(case.path.stops) if zero else way[number].stop
         assert stop is not None
+        swept = SWEPT[case.path.kind].name.lower()
+        if zero and states[swept][stop] <= row[swept]:
+            continue  # of several the lowest
         table = files.read(work / f"fields_{number}.txt", largest_fields)
         if table is not None:
             fields[stop] = _fields(case.model, table)
@@ -288,32 +333,6 @@ def _collect(
             states[name][:] = np.nan
     if case.effects.volume is Volume.INCOMPRESSIBLE:
         states["unstable_modes"][:] = np.nan  # solid_incompressible.idp counts none
-
-
-def _judge(
-    case: Case,
-    states: dict[str, NDArray[np.float64]],
-    fields: dict[int, dict[str, NDArray[np.float64]]],
-    end: _End,
-    log: Path,
-) -> Solution:
-    """Status of every state and of the case, with the reason in words."""
-    each = state_status(case.path.kind, states)
-    limited = end.reason.startswith(LIMITS)
-    status = end.status or case_status(each, limited)
-    reason = "" if status is CaseStatus.CONVERGED else end.reason
-    if status is CaseStatus.INVALID_STATE:
-        count = sum(s is StateStatus.INVALID_STATE for s in each)
-        reason = f"{count} of {len(each)} states are turned inside out somewhere"
-    return Solution(
-        status=status,
-        reason=reason,
-        states=states,
-        state_status=each,
-        fields=fields,
-        log=freefem.tail(log) if end.status else "",
-        unknowns=end.unknowns,
-    )
 
 
 def _direct(model: str) -> Callable[[Case], Solution] | None:
@@ -350,12 +369,12 @@ def _rows(path: Path, most: int = 1000) -> list[dict[str, float]]:
     return rows
 
 
-def _waypoint(row: dict[str, float], way: list[Waypoint]) -> int:
-    """The waypoint that a row is of."""
+def _waypoint(row: dict[str, float], way: list[Waypoint], path: LoadPath) -> int:
+    """The waypoint that a row is of; that of zero force stands behind the last."""
     number = row["waypoint"]
-    if not (number.is_integer() and 0 <= number < len(way)):
+    if not (number.is_integer() and 0 <= number < len(way) + path.zero_force):
         raise ValueError(f"a state at waypoint {number:g}, which does not exist")
-    if way[int(number)].stop is None:
+    if number < len(way) and way[int(number)].stop is None:
         raise ValueError(f"a state at waypoint {number:g}, which has no stop")
     if not math.isfinite(row["force"]):
         raise ValueError(f"a state whose force is {row['force']}")
@@ -370,6 +389,15 @@ def _fields(model: str, text: bytes) -> dict[str, NDArray[np.float64]]:
     if not text.endswith(b"\n") or table.shape[1] != width or not np.isfinite(table).all():
         raise ValueError(f"fields of shape {table.shape}, cut off or not finite")
     return {name: table[:, part] for name, part in parts.items()}
+
+
+def _searched(path: Path) -> tuple[float, float] | None:
+    """The ends in zero.txt of solver/edp/output.idp."""
+    text = files.read(path, LARGEST_TEXT)
+    if text is None:
+        return None
+    low, high = map(float, text.decode().split())
+    return low, high
 
 
 def _with_diameter(case: Case, solution: Solution) -> Solution:

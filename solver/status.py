@@ -46,9 +46,9 @@ def state_status(kind: PathKind, states: dict[str, NDArray[np.float64]]) -> list
     reached = np.isfinite(states["force"])
     smallest = [states[name] for name in ("min_det_f", "min_det_f_nodes", "margin")]
     valid = np.min(smallest, axis=0) > 0
-    modes = states["unstable_modes"] + (
-        (states["stiffness"] < 0) if kind is PathKind.ISOTONIC else 0
-    )
+    modes = np.nan_to_num(states["unstable_modes"])  # NaN where the model counts none
+    if kind is PathKind.ISOTONIC:
+        modes = modes + (states["stiffness"] < 0)
     return [
         StateStatus.NOT_REACHED
         if not r

@@ -20,7 +20,7 @@ BUILT = ("cylinder", *MESHED)
 FACTORS = {
     "muscle.inner_diameter": (20.1, MODELS),
     "muscle.wall_thickness": (2.5, BUILT),
-    "muscle.length": (200.0, MESHED),
+    "muscle.length": (200.0, ("cylinder", *MESHED)),
     "muscle.cap_length": (9.0, ("solid",)),
     "muscle.braid.lead": (216.0, MODELS),
     "muscle.braid.threads": (120, MODELS),  # a braid is kept whole, also for Eq. (1)

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from solver.load_path import RAMP_STEPS, Control, Due, LoadPath, PathKind
+from solver.load_path import RAMP_STEPS, Control, LoadPath, PathKind
 from solver.refusal import UnsolvableCase
 
 EPS, P, F = Control.CONTRACTION, Control.PRESSURE, Control.FORCE
@@ -48,11 +48,17 @@ def test_isobaric_way_extends_first_and_returns():
     assert [w.stop for w in way[RAMP_STEPS:]] == [1, 0, None, 2, 3]
 
 
-def test_isobaric_way_to_the_free_contraction():
-    curve = path("isobaric", 0.4, 0.0, 0.1, zero_force=True)
-    (way,) = curve.ways()
-    assert curve.states == 3
-    assert recorded(way)[-1] == ({P: 0.4, F: 0}, 2)
+@pytest.mark.parametrize("kind", ["isobaric", "isometric"])
+def test_the_state_of_zero_force_changes_no_way(kind):
+    """It is looked for when the stops are done."""
+    plain, curve = (path(kind, 0.1, 0.0, 0.2, zero_force=zero) for zero in (False, True))
+    assert (plain.states, curve.states) == (2, 3)
+    assert plain.ways() == curve.ways()
+
+
+def test_without_pressure_the_unloaded_muscle_is_on_the_curve():
+    (way,) = path("isobaric", 0.0, 0.1, 0.2, zero_force=True).ways()
+    assert targets(way)[0] == ({P: 0, EPS: 0}, None)
 
 
 def test_without_pressure_there_is_no_ramp():
@@ -69,16 +75,6 @@ def test_isometric_way_falls_from_the_highest_pressure():
         ({EPS: 0.1, P: 0.2}, 1),
         ({EPS: 0.1, P: 0.0}, 0),
     ]
-
-
-def test_isometric_way_turns_aside_to_the_threshold_behind_every_stop():
-    falling, rising = path("isometric", 0.1, 0.1, 0.4, zero_force=True).ways()
-    assert [stop for _, stop in recorded(falling)] == [1, 2, 0, 2, 2]
-    assert [stop for _, stop in recorded(rising)] == [0, 2, 1, 2, 2]
-    assert recorded(falling)[1] == ({EPS: 0.1, F: 0}, 2)
-    for way, due in ((falling, Due.PULLS_NO_MORE), (rising, Due.PULLS)):
-        assert [w.due for w in way if w.stop == 2] == [due, due, Due.AT_LAST]
-        assert {w.due for w in way if w.stop != 2} == {Due.ALWAYS}
 
 
 def test_isometric_second_way_rises():
