@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 CONFIG = ROOT / "pyproject.toml"
-MOST = 2  # modules; lower it when one is clean
+MOST = 1  # modules; lower it when one is clean
 
 
 def unchecked() -> list[str]:

@@ -25,6 +25,7 @@ from workflow.data import dataset
 from workflow.data.records import Curve
 from workflow.plan.plan import Place, plan
 from workflow.study.errors import StudyError
+from workflow.study.schema import Scene
 from workflow.study.study import StudiedMuscle, Study
 
 if TYPE_CHECKING:
@@ -51,9 +52,10 @@ def cases(study: Study) -> list[PlacedCase]:
     StudyError
         If the study is not about the paper's muscle.
     """
-    if MUSCLE not in study.muscles or study.muscles[MUSCLE].thread is None:
+    thread = study.muscles[MUSCLE].thread if MUSCLE in study.muscles else None
+    if thread is None:
         raise StudyError(f"muscles.{MUSCLE}: the claims are of this muscle, with threads")
-    own = study.muscles[MUSCLE].thread.stiffness
+    own = thread.stiffness
     curves = [
         case
         for stiffness in sorted({own, *STIFFNESSES})
@@ -98,29 +100,38 @@ def _stiffened(study: Study, stiffness: float) -> Study:
     return replace(study, muscles=muscles, scenes={n: s for n, s in scenes.items() if s.models})
 
 
-def _fast(scene, model: str) -> bool:
+def _asked(solved: Solved) -> PlacedCase:
+    """The case, which is one of this study."""
+    assert isinstance(solved.asked, PlacedCase)
+    return solved.asked
+
+
+def _fast(scene: Scene, model: str) -> bool:
     return model in (GEOMETRIC, SWEPT_MODEL) or "stress" in scene.quantities
 
 
 def table(solved: Sequence[Solved]) -> pd.DataFrame:
     """The scorecard."""
     trees, own = {}, np.nan
-    for stiffness in sorted({s.asked.stiffness for s in solved}):
-        here = [s for s in solved if s.asked.stiffness == stiffness]
-        own = stiffness if here[0].asked.own else own
+    for stiffness in sorted({_asked(s).stiffness for s in solved}):
+        here = [s for s in solved if _asked(s).stiffness == stiffness]
+        own = stiffness if _asked(here[0]).own else own
         trees[stiffness] = tree(here)
     return scorecard(trees, own)
 
 
 def tree(all_solved: Sequence[Solved]) -> xr.DataTree:
     """The dataset of some cases, with the groups of the stress and of single threads."""
-    solved = [s for s in all_solved if s.asked.place]
-    cells = [s for s in all_solved if not s.asked.place]
-    muscles = {s.asked.place.muscle: s.asked.muscle for s in solved}
-    curves = [
-        Curve(s.asked.place, s.asked.case.key, s.asked.case, s.solution, s.asked.case.path.stops)
-        for s in solved
-    ]
+    muscles, curves, solved, cells = {}, [], [], []
+    for each in all_solved:
+        asked = _asked(each)
+        if asked.place is None or asked.muscle is None:
+            cells.append(each)
+            continue
+        solved.append(each)
+        muscles[asked.place.muscle] = asked.muscle
+        case, stops = asked.case, asked.case.path.stops
+        curves.append(Curve(asked.place, case.key, case, each.solution, stops))
     found = dataset.build(curves, muscles)
     states = [state for s in solved for state in _stresses(s)]
     if states:
@@ -136,7 +147,8 @@ def tree(all_solved: Sequence[Solved]) -> xr.DataTree:
 
 def _stresses(solved: Solved) -> Iterator[dict[str, str | float]]:
     """Summaries of the states that have a stress."""
-    asked, path = solved.asked, solved.asked.case.path
+    asked, path = _asked(solved), solved.asked.case.path
+    assert asked.place is not None
     for number, fields in solved.solution.fields.items():
         if "stress" in fields and solved.solution.state_status[number] is StateStatus.CONVERGED:
             muscle = asked.case.muscle
@@ -147,7 +159,8 @@ def _stresses(solved: Solved) -> Iterator[dict[str, str | float]]:
                 "variant": asked.place.variant,
                 "pressure": path.held,
                 "contraction": path.stops[number],
-            } | dict(zip(SUMMARY, numbers, strict=True))
+                **dict(zip(SUMMARY, numbers, strict=True)),
+            }
 
 
 def draw(solved: Sequence[Solved], table: pd.DataFrame) -> dict[str, "Figure"]:
