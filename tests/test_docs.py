@@ -8,7 +8,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 DOCUMENTS = sorted([*ROOT.glob("*.md"), ROOT / "config/README.md", *(ROOT / "docs").rglob("*.md")])
 SOURCES = (".py", ".idp", ".edp", ".smk", ".md", ".toml", ".sh", ".cff", ".lock")
-MADE = {"results", "my"}  # folders of a run, and of the reader
+MADE = {"results", ".venv", "my"}  # folders of a run, of setup.sh, and of the reader
 PRESENT = [d for d in DOCUMENTS if d.name != "CHANGELOG.md"]  # a history names what is no more
 
 
