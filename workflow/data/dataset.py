@@ -38,7 +38,7 @@ from workflow.data import reference
 from workflow.data.records import Curve
 from workflow.data.reference import ForceMap
 from workflow.plan import mesh_error
-from workflow.plan.effect_costs import group as weights_group
+from workflow.plan.effect_costs import group as measured_effects
 from workflow.study.schema import HELD_KEY, SWEPT_KEY
 from workflow.study.study import StudiedMuscle
 
@@ -87,7 +87,7 @@ def build(
     if named := {muscle.reference for muscle in muscles.values()} - {()}:
         groups["reference"] = _reference(reference.load(sorted(set().union(*named))))
     if effects:
-        groups["effects"] = weights_group()
+        groups["effects"] = measured_effects()
     for name in HELD_KEY:
         found = [curve for curve in curves if curve.place.group == name]
         if found:

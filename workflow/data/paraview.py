@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geometry.files import aside
 from solver import record
-from workflow.data.principal_stress import principal, principal_of_six
+from workflow.data.principal_stress import principal_of_four, principal_of_six
 from workflow.study.errors import StudyError
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def _line(fields: dict[str, NDArray[np.float64]]) -> Parts:
 
 def _wall(fields: dict[str, NDArray[np.float64]]) -> Parts:
     points, displacement = _places(fields["corners"])
-    largest, smallest = principal(fields["stress"])
+    largest, smallest = principal_of_four(fields["stress"])
     data = {"displacement": displacement}
     data |= {f"stress_{c}": fields["stress"][:, k] for k, c in enumerate(COMPONENTS)}
     data |= {"largest_principal_stress": largest, "smallest_principal_stress": smallest}

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from workflow.data.principal_stress import principal
+from workflow.data.principal_stress import principal_of_four
 
 SECTION = ["R [mm]", "Z [mm]", "r [mm]", "z [mm]"]
 LARGEST, SMALLEST = "largest principal stress [MPa]", "smallest principal stress [MPa]"
@@ -13,7 +13,7 @@ LARGEST, SMALLEST = "largest principal stress [MPa]", "smallest principal stress
 def wall(fields: dict[str, NDArray[np.float64]]) -> pd.DataFrame:
     """The corners of all triangles, three rows each, with their principal stresses."""
     table = pd.DataFrame(fields["corners"], columns=SECTION)
-    table[LARGEST], table[SMALLEST] = principal(fields["stress"])
+    table[LARGEST], table[SMALLEST] = principal_of_four(fields["stress"])
     return table.assign(where="wall")
 
 

@@ -16,7 +16,7 @@ from typing import Any
 from geometry.meridian import MeridianMesh
 from geometry.section import SectionMesh
 
-MESHES: dict[str, dict[str, Any]] = {  # that were weighed: what differs from the default numerics
+MESHES: dict[str, dict[str, Any]] = {  # that were measured: what differs from the default numerics
     "coarser": {"section": SectionMesh(cap_step=2, growth=2, body_step=4)},
     "default": {},
     "finer": {"section": SectionMesh(refinement=2), "meridian": MeridianMesh(refinement=2)},
@@ -37,7 +37,7 @@ NUMBERS = {  # that the dataset has: unit, long name
 
 
 @dataclass(frozen=True, kw_only=True)
-class Weight:
+class MeasuredEffect:
     """Of one effect in one regime on one path; see workflow/analyses/effects/table.py.
 
     Shares of the largest value along the path; NaN where a quantity says nothing there. Seconds are
@@ -60,32 +60,32 @@ class Weight:
     seconds_without: float
 
 
-Weights = Mapping[tuple[str, str, str], Weight]  # by regime, path, effect
+MeasuredEffects = Mapping[tuple[str, str, str], MeasuredEffect]  # by regime, path, effect
 
 
 @cache
-def load(file: Path = FILE) -> Weights:
-    """The measured weights."""
+def load(file: Path = FILE) -> MeasuredEffects:
+    """The measured effects."""
     lines = file.read_text().splitlines()
     rows = csv.DictReader(line for line in lines if not line.startswith("#"))
     found: list[dict[str, Any]] = [
         {
             f.name: row[f.name] if f.type is str else float(row[f.name] or nan)
-            for f in fields(Weight)
+            for f in fields(MeasuredEffect)
         }
         for row in rows
     ]
-    weights = [Weight(**values) for values in found]
-    return {(w.regime, w.path, w.effect): w for w in weights}
+    measured = [MeasuredEffect(**values) for values in found]
+    return {(w.regime, w.path, w.effect): w for w in measured}
 
 
 def origin(file: Path = FILE) -> str:
-    """When and with which code the weights were measured."""
+    """When and with which code the effects were measured."""
     return file.read_text().splitlines()[0].removeprefix("# ")
 
 
 def group() -> Any:
-    """The weights as a dataset (xarray) of dims regime, path, effect."""
+    """The measured effects as a dataset (xarray) of dims regime, path, effect."""
     import xarray as xr
 
     known = load()

@@ -13,7 +13,7 @@ from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
 
 def lines(plan: Plan) -> Iterator[str]:
     """The whole text, line by line."""
-    yield f"weights: {effect_costs.origin()}"
+    yield f"effects: {effect_costs.origin()}"
     for name, places in plan.scenes.items():
         scene = plan.study.scenes[name]
         choice = model_choice.choose(plan.study, scene)
@@ -49,7 +49,7 @@ def _models(scene: Scene, choice: Choice) -> Iterator[str]:
     if choice.chosen and not choice.chosen.error <= choice.tolerance:
         how = "the best there is"
     if {"stress", "deformed_shape"} & set(scene.quantities):
-        how += "; errors are those of the force, fields are not weighed"
+        how += "; errors are those of the force, fields are not measured"
     yield f"  models   {how}"
     for estimate in choice.estimates:
         rung = estimate.rung
@@ -61,8 +61,8 @@ def _estimate(estimate: Estimate) -> str:
     if estimate.refused:
         return estimate.refused
     if isnan(estimate.error):
-        return "not weighed"
-    lost = "; some states are lost or not weighed" if estimate.missing else ""
+        return "not measured"
+    lost = "; some states are lost or not measured" if estimate.missing else ""
     return f"error {100 * estimate.error:.2g} %, {estimate.seconds:.2g} s a curve{lost}"
 
 

@@ -1,21 +1,21 @@
-"""How large the forces of a scene are beside those of the curves that were weighed.
+"""How large the forces of a scene are beside those of the curves that were measured.
 
 An error is judged against the largest force of its own curve. A scene that begins at 10 % of
 contraction has smaller forces than a curve from 0, so the same error in newtons is a larger share.
 """
 
 from solver import geometric
-from workflow.plan.effect_costs import Weights
+from workflow.plan.effect_costs import MeasuredEffects
 from workflow.study.schema import Scene
 from workflow.study.study import StudiedMuscle, Study
 
-EQ_1 = 2624.0  # N/MPa, of the muscles that were weighed, at their initial length
+EQ_1 = 2624.0  # N/MPa, of the muscles that were measured, at their initial length
 WALL = 2 * 20  # mm2, thickness times diameter of the wall of the normal condition
 LEAST = 0.05  # share of Eq. (1) that a force is at least taken for
 EVERYTHING = "all but pressure on the net"
 
 
-def against(study: Study, scene: Scene, weights: Weights, regime: str) -> float:
+def error_factor(study: Study, scene: Scene, measured: MeasuredEffects, regime: str) -> float:
     """By how much more an error weighs in a scene than in the study of effects; 1 under a load.
 
     Errors in newtons are taken to go with the size of Eq. (1) and, at constant pressure, with the
@@ -23,7 +23,7 @@ def against(study: Study, scene: Scene, weights: Weights, regime: str) -> float:
     study.
     """
     assert scene.path is not None  # a scene without has no curves
-    weight = weights[regime, scene.path, EVERYTHING]
+    effect = measured[regime, scene.path, EVERYTHING]
     if scene.path == "isotonic":
         return 1.0
     found = []
@@ -32,18 +32,18 @@ def against(study: Study, scene: Scene, weights: Weights, regime: str) -> float:
         for held in scene.held:
             if scene.path == "isobaric":
                 contraction, pressure = min(scene.swept, key=abs), held
-                loads = held / weight.held
+                loads = held / effect.held
             else:
                 contraction, pressure, loads = held, max(scene.swept), 1.0
-            error = weight.largest * loads * _size(muscle)
+            error = effect.largest * loads * _size(muscle)
             found.append(
-                error / _force(muscle, pressure, contraction, weight.force * weight.largest)
+                error / _force(muscle, pressure, contraction, effect.force * effect.largest)
             )
     return max(found)
 
 
 def _size(muscle: StudiedMuscle) -> float:
-    """Of Eq. (1), as a multiple of the muscles that were weighed; 1 for a bare tube."""
+    """Of Eq. (1), as a multiple of the muscles that were measured; 1 for a bare tube."""
     return _eq_1(muscle, 1.0, 0.0) / EQ_1 if muscle.thread else 1.0
 
 
@@ -58,6 +58,6 @@ def _force(muscle: StudiedMuscle, pressure: float, contraction: float, taken: fl
     ideal = _eq_1(muscle, pressure, contraction)
     wall = muscle.muscle.wall_thickness * muscle.muscle.inner_diameter / WALL
     if muscle.rubber.shear_modulus < 0.2:
-        wall /= 1.5  # weighed at 3 mm
+        wall /= 1.5  # measured at 3 mm
     share = 0.4 + 0.6 * min(abs(contraction) / 0.15, 1.0)
     return max(ideal - share * taken * wall, LEAST * ideal)

@@ -1,6 +1,6 @@
 """Which model, effects and mesh a scene gets: the cheapest that is exact enough for it.
 
-Pure: no files but the measured weights and errors (effect_costs.csv, mesh_error.csv) are read, and
+Pure: no files but the measured effects and errors (effect_costs.csv, mesh_error.csv) are read, and
 nothing is solved. The models form a ladder; going down it leaves out one effect after the other,
 and the error of a step is what leaving that effect out has changed in the study of effects, in the
 regimes that the scene touches. A scene that names its ``models`` gets those; its ``effects`` hold
@@ -18,14 +18,14 @@ from typing import Any
 from solver.effects import EFFECTS, KINDS, READ_BY, Effects, active
 from solver.numerics import Numerics
 from solver.refusal import UnsolvableCase
-from workflow.plan import force_scale
-from workflow.plan.effect_costs import MESHES, Weight, Weights, load
+from workflow.plan.effect_costs import MESHES, MeasuredEffect, MeasuredEffects, load
+from workflow.plan.force_scale import error_factor
 from workflow.plan.mesh_error import share_of
 from workflow.study.schema import QUANTITIES, Scene
 from workflow.study.study import Study, Variant
 
 TOLERANCE = 0.01  # share of the curve's largest value, where a scene names none
-SHORTEST = 20 / 300  # diameter / length of the muscles that were weighed: caps act in proportion
+SHORTEST = 20 / 300  # diameter / length of the muscles that were measured: caps act in proportion
 CAPS = ("end_caps", "cap_geometry")
 OF_MESH = 0.25  # share of the tolerance that the mesh may take
 ORDER = 3  # a mesh twice as fine leaves a third of the difference, or less (second order)
@@ -33,7 +33,7 @@ ORDER = 3  # a mesh twice as fine leaves a third of the difference, or less (sec
 
 @dataclass(frozen=True)
 class Rung:
-    """A model on a mesh; ``step`` is what it leaves out of ``above``, as the weights call it."""
+    """A model on a mesh; ``step`` is what it leaves out of ``above``, as in effect_costs.csv."""
 
     name: str
     model: str
@@ -56,7 +56,7 @@ LADDER = {  # cheapest first
 # Off the ladder, whose models all smear the threads: it has no caps, and is dear.
 OF_CELL = Rung("cell", "cell", "default", "membrane", "end_caps")
 DISCRETE = "discrete_threads"
-SMEARED = "isobaric", DISCRETE  # path and effect: weighed at constant pressure only
+SMEARED = "isobaric", DISCRETE  # path and effect: measured at constant pressure only
 
 
 @dataclass(frozen=True)
@@ -90,13 +90,13 @@ class Choice:
     chosen: Estimate | None
 
 
-def choose(study: Study, scene: Scene, weights: Weights | None = None) -> Choice:
+def choose(study: Study, scene: Scene, measured: MeasuredEffects | None = None) -> Choice:
     """The models and variants of a scene with a path."""
-    weights = load() if weights is None else weights
+    measured = load() if measured is None else measured
     touched = tuple(regimes(study, scene))
     tolerance = TOLERANCE if scene.tolerance is None else scene.tolerance
     estimates = tuple(
-        _estimate(study, scene, rung, touched, weights) for rung in (*LADDER.values(), OF_CELL)
+        _estimate(study, scene, rung, touched, measured) for rung in (*LADDER.values(), OF_CELL)
     )
     chosen = None
     if scene.models is None:
@@ -162,7 +162,7 @@ def regimes(study: Study, scene: Scene) -> Iterator[str]:
 
 
 def _estimate(
-    study: Study, scene: Scene, rung: Rung, touched: tuple[str, ...], weights: Weights
+    study: Study, scene: Scene, rung: Rung, touched: tuple[str, ...], measured: MeasuredEffects
 ) -> Estimate:
     assert scene.path is not None
     refused = refusal(rung.model, scene)
@@ -172,66 +172,68 @@ def _estimate(
         refused = refused or f"only where {DISCRETE} is on"
     errors, seconds, missing = [], [], False
     for regime in touched:
-        error, lost = _error(study, scene, rung, regime, weights)
+        error, lost = _error(study, scene, rung, regime, measured)
         errors.append(error)
         missing |= lost
         if rung is OF_CELL:
-            seconds.append(weights[(regime, *SMEARED)].seconds_with)
+            seconds.append(measured[(regime, *SMEARED)].seconds_with)
             continue
-        last = weights[regime, scene.path, rung.step]
+        last = measured[regime, scene.path, rung.step]
         seconds.append(last.seconds_without if rung.above else last.seconds_with)
     mesh_error = share_of(rung.model, Effects(), replace(Numerics(), **MESHES[rung.mesh]))
     return Estimate(rung, max(errors), mesh_error, max(seconds), missing, refused)
 
 
 def _error(
-    study: Study, scene: Scene, rung: Rung, regime: str, weights: Weights
+    study: Study, scene: Scene, rung: Rung, regime: str, measured: MeasuredEffects
 ) -> tuple[float, bool]:
     """Expected error of a rung: the sum of the steps down to it; and whether states are lost."""
     assert scene.path is not None
-    size = force_scale.against(study, scene, weights, regime)
-    total = _of_smearing(study, scene, weights, regime, size) if rung is not OF_CELL else 0.0
+    factor = error_factor(study, scene, measured, regime)
+    total = _of_smearing(study, scene, measured, regime, factor) if rung is not OF_CELL else 0.0
     missing = False
     at: Rung | None = rung
     while at is not None:
-        weight = weights[regime, scene.path, at.step]
-        change = _change(study, scene, weight, size)
+        effect = measured[regime, scene.path, at.step]
+        change = _change(study, scene, effect, factor)
         if at.above is None:
             total += change / ORDER
         else:
             total += change
-        missing |= at.above is not None and weight.missing > 0
+        missing |= at.above is not None and effect.missing > 0
         at = LADDER[at.above] if at.above else None
     return total, missing
 
 
-def _of_smearing(study: Study, scene: Scene, weights: Weights, regime: str, size: float) -> float:
+def _of_smearing(
+    study: Study, scene: Scene, measured: MeasuredEffects, regime: str, factor: float
+) -> float:
     """What smeared threads change; of a contraction the same share as of the force."""
     if not any(study.muscles[name].thread for name in scene.muscles):
         return 0.0
-    weight = weights[(regime, *SMEARED)]
-    return _change(study, scene, replace(weight, contraction=weight.force), size)
+    effect = measured[(regime, *SMEARED)]
+    return _change(study, scene, replace(effect, contraction=effect.force), factor)
 
 
-def _change(study: Study, scene: Scene, weight: Weight, size: float) -> float:
-    """What leaving out an effect changes in a scene; ``size`` is by force_scale.py."""
-    if weight.effect in scene.effects:  # forced on or off: no error
+def _change(study: Study, scene: Scene, effect: MeasuredEffect, factor: float) -> float:
+    """What leaving out an effect changes in a scene; ``factor`` is by force_scale.py."""
+    if effect.effect in scene.effects:  # forced on or off: no error
         return 0.0
     change = max(
         (
-            value * (size if name == "force" else 1)
+            value * (factor if name == "force" else 1)
             for name in _judged(scene)
-            if not isnan(value := getattr(weight, name))
+            if not isnan(value := getattr(effect, name))
         ),
         default=inf,
     )
-    if weight.effect in CAPS:
+    if effect.effect in CAPS:
         change *= max(_stoutness(study, name) for name in scene.muscles)
     return change
 
 
 def _judged(scene: Scene) -> list[str]:
-    """Columns of the weights that tell the error of what a scene wants."""
+    """Columns of effect_costs.csv that tell the error of what a scene wants."""
     names = ["contraction" if scene.path == "isotonic" else "force"]
     if {"inner_diameter", "outer_diameter", "volume"} & set(scene.quantities):
         names.append("diameter")
@@ -241,7 +243,7 @@ def _judged(scene: Scene) -> list[str]:
 
 
 def _stoutness(study: Study, muscle: str) -> float:
-    """Diameter to length, as a multiple of that of the muscles that were weighed."""
+    """Diameter to length, as a multiple of that of the muscles that were measured."""
     made = study.muscles[muscle].muscle
     return made.inner_diameter / made.length / SHORTEST
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver.status import StateStatus
-from workflow.data.principal_stress import principal
+from workflow.data.principal_stress import principal_of_four
 from workflow.data.states import COLUMN, CONTRACTION, FORCE, PRESSURE, WALL
 from workflow.data.stress import LARGEST, SMALLEST, along_meridian, wall
 from workflow.figures.labels import SERIES
@@ -146,7 +146,7 @@ def test_principal_stresses():
     c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
     rr, zz, rz = 2 * c**2 + 8 * s**2, 2 * s**2 + 8 * c**2, 6 * s * c
     rows = np.array([[rr, rz, zz, 5.0], [rr, rz, zz, 9.0], [rr, rz, zz, 1.0]])
-    largest, smallest = principal(rows)
+    largest, smallest = principal_of_four(rows)
     assert largest == pytest.approx([8, 9, 8])
     assert smallest == pytest.approx([2, 2, 1])
 

@@ -151,13 +151,13 @@ def test_explain_says_it_for_every_scene():
     for name in WITH_PATH:
         assert f"\n{name}: " in text
     assert text.count("  wants ") == text.count("  models ") == len(WITH_PATH)
-    assert "weights: study of effects of" in text
+    assert "effects: study of effects of" in text
 
 
 # --- what was measured ----------------------------------------------------------------------------
 
 
-def test_weights_are_those_of_the_study():
+def test_measured_effects_are_those_of_the_study():
     asked = {(r, p, e) for r in REGIMES for p in planner_paths() for e in table.SWITCHES}
     dear = {key for key in asked if key[2] == model_choice.DISCRETE and key[1] != "isobaric"}
     assert set(effect_costs.load()) == asked - dear
@@ -168,9 +168,9 @@ def test_every_model_but_the_cell_pays_for_smearing(study):
     smeared = {e.rung.name: e for e in model_choice.choose(study, scene).estimates}
     off = scene.model_copy(update={"effects": {model_choice.DISCRETE: "off"}})
     free = {e.rung.name: e for e in model_choice.choose(study, off).estimates}
-    weight = max(effect_costs.load()[r, "isobaric", model_choice.DISCRETE].force for r in REGIMES)
+    largest = max(effect_costs.load()[r, "isobaric", model_choice.DISCRETE].force for r in REGIMES)
     for name in model_choice.LADDER:
-        assert 0 < smeared[name].error - free[name].error < 10 * weight
+        assert 0 < smeared[name].error - free[name].error < 10 * largest
     cell = smeared["cell"]
     assert np.isfinite(cell.error)
     assert cell.error < smeared["cylinder"].error
@@ -182,7 +182,7 @@ def planner_paths():
 
 
 @pytest.mark.parametrize("path", planner_paths())
-def test_weights_are_not_out_of_date(study, solve_case, path):
+def test_measured_effects_are_not_out_of_date(study, solve_case, path):
     """What is quick to solve is solved again; run snakemake effects and weigh if this fails."""
     quick = {name for name, setup in SETUPS.items() if setup.model not in ("solid", "cell")}
     solved = {

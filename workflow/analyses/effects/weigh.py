@@ -12,13 +12,13 @@ from workflow.analyses import analysis
 from workflow.analyses.analysis import Solved
 from workflow.analyses.effects.table import table
 from workflow.data import records
-from workflow.plan.effect_costs import FILE, Weight
+from workflow.plan.effect_costs import FILE, MeasuredEffect
 
 COSTS = Path("results/cost")
 
 
 def measure(study: str, costs: Path = COSTS, file: Path = FILE) -> None:
-    """Write the weights of a solved study of effects, with the seconds that its cases took."""
+    """Write what is measured by a solved study of effects, with the seconds that its cases took."""
     solved = []
     seconds: dict[tuple[str, str, str], float] = {}
     for asked in analysis.cases("effects", study):
@@ -33,7 +33,7 @@ def measure(study: str, costs: Path = COSTS, file: Path = FILE) -> None:
         for side in ("with", "without"):
             spent = seconds[row["regime"], row["path"], row[side]]
             row[f"seconds_{side}"] = float(f"{spent:.2g}")
-    names = [f.name for f in fields(Weight)]
+    names = [f.name for f in fields(MeasuredEffect)]
     with aside(file) as beside, beside.open("w", newline="") as stream:
         stream.write(f"# study of effects of {date.today()}, code {code_digest()}\n")
         writer = csv.DictWriter(stream, names, extrasaction="ignore", lineterminator="\n")

@@ -10,7 +10,7 @@ from workflow.analyses.claims import CLAIMS, Data, Verdict, judge
 from workflow.analyses.claims.claim import STEPS
 from workflow.analyses.claims.factors import SILICONE, WALLS
 
-from .world import EQUATION, FORCE, group, isobaric, isometric, isotonic, stress, with_map
+from .made_up import EQUATION, FORCE, group, isobaric, isometric, isotonic, stress, with_map
 
 YES, PARTLY, NO = Verdict.REPRODUCED, Verdict.PARTLY, Verdict.NOT_REPRODUCED
 BY_NAME = {claim.name: claim for claim in CLAIMS}

@@ -9,10 +9,10 @@ import xarray as xr
 from workflow.analyses.claims import CLAIMS
 from workflow.analyses.claims.scorecard import SHARE, scorecard, shifted
 
-from . import world
-from .world import group
+from . import made_up
+from .made_up import group
 
-EQUATION, NARROW = np.array(world.EQUATION), np.array(world.FORCE)
+EQUATION, NARROW = np.array(made_up.EQUATION), np.array(made_up.FORCE)
 WIDE = 4 * NARROW
 
 
