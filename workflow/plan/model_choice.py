@@ -53,7 +53,7 @@ LADDER = {  # cheapest first
         Rung("solid, finer", "solid", "finer", None, "mesh of solid"),
     )
 }
-# Off the ladder, whose models all smear the threads: it has no caps, and is dear.
+# No step of the ladder, whose models all smear the threads: the cell has no caps, and takes long.
 OF_CELL = Rung("cell", "cell", "default", "membrane", "end_caps")
 DISCRETE = "discrete_threads"
 SMEARED = "isobaric", DISCRETE  # path and effect: measured at constant pressure only
