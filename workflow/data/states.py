@@ -19,6 +19,7 @@ from workflow.data.reference import ForceMap
 from workflow.plan import mesh_error
 from workflow.plan.plan import Plan
 from workflow.study.schema import Scene
+from workflow.study.study import StudiedMuscle
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,6 +40,8 @@ SHOWN = (GOOD, StateStatus.UNSTABLE.value)  # statuses whose numbers may be show
 REFERENCE = "reference"  # status of what was not computed
 NUMBER = "state"  # column: number of the state in its record
 SUSPECT = "suspect"  # status of a point that is shown but not used
+FLAGS = "flags"  # column: what to know of a state beside its status, words of solver/status.py
+STRETCH = COLUMN["thread_stretch_max"]
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,11 @@ class SceneData:
         return {name: self.plan.study.muscles[name].muscle for name in self.scene.muscles}
 
     @property
+    def studied(self) -> dict[str, StudiedMuscle]:
+        """The same with their materials and what is known of them."""
+        return {name: self.plan.study.muscles[name] for name in self.scene.muscles}
+
+    @property
     def materials(self) -> dict[str, str]:
         """Names of their rubbers by the muscle's name."""
         return {name: self.plan.study.muscles[name].material for name in self.scene.muscles}
@@ -101,7 +109,7 @@ def states(data: SceneData, quantities: Iterable[str]) -> pd.DataFrame:
 
     Columns: source (model), muscle, variant, point (stop or zero force), the two prescribed
     controls with the exact numbers of the study, the quantities, the discretisation errors of some
-    of them, status.
+    of them, the largest thread stretch, status, flags.
     """
     frames = [of_curve(data.scene, quantities, *solved) for solved in data.solutions]
     return pd.concat(frames, ignore_index=True).drop(columns=NUMBER)
@@ -136,7 +144,10 @@ def of_curve(
         rows.setdefault(COLUMN[name], values)
         if name in WITH_ERROR:
             rows[error_of(COLUMN[name])] = mesh_error.error(case, solution, name)[wanted]
-    return pd.DataFrame(rows | {"status": status, NUMBER: wanted})
+    shown = np.isin(status, SHOWN)
+    rows[STRETCH] = np.where(shown, solution.states["thread_stretch_max"][wanted], np.nan)
+    flags = [" ".join(sorted(solution.flags[number])) for number in wanted]
+    return pd.DataFrame(rows | {"status": status, FLAGS: flags, NUMBER: wanted})
 
 
 def describe(table: pd.DataFrame, data: SceneData) -> pd.DataFrame:
@@ -158,7 +169,7 @@ def reference_curves(
 ) -> pd.DataFrame:
     """The maps along contraction, one curve per pressure, with their own points among them."""
     low, high = min(contractions), max(contractions)
-    frames = []
+    frames = [pd.DataFrame()]
     for found in maps:
         for p in pressures:
             own = [e for e in found.contractions(p) if low <= e <= high]
@@ -169,7 +180,8 @@ def reference_curves(
         left_out = found.suspect[np.isin(found.suspect[:, 0], pressures)]
         if left_out.size:
             rows = pd.DataFrame(left_out, columns=[PRESSURE, CONTRACTION, FORCE])
-            frames.append(rows.assign(source=found.name, point="tabulated", status=SUSPECT))
+            named = {"source": found.name, "point": "tabulated", "status": SUSPECT, FLAGS: ""}
+            frames.append(rows.assign(**named))
     return pd.concat(frames, ignore_index=True)
 
 
@@ -178,7 +190,7 @@ def reference_at(
 ) -> pd.DataFrame:
     """The maps along pressure at one contraction, with their tabulated pressures among them."""
     low, high = min(pressures), max(pressures)
-    frames = []
+    frames = [pd.DataFrame()]
     for found in maps:
         own = [p for p in found.pressures if low <= p <= high]
         every = np.union1d(pressures, own)
@@ -201,6 +213,7 @@ def _reference_rows(
             PRESSURE: pressure,
             FORCE: force,
             "status": REFERENCE,
+            FLAGS: "",
         }
     )
     return rows.dropna(subset=[FORCE])

@@ -1,23 +1,36 @@
-"""Drawing of curves: what failed is not drawn as if it had not.
+"""Drawing of curves: what failed is not drawn as if it had not, and nothing vanishes unsaid.
 
-Converged states are joined by a line that stops at a gap; unstable ones are open circles; invalid
-ones and those not reached are left out, and a note on the figure says so.
+Converged states are joined by a line that stops at a gap; unstable ones are open circles; flagged
+ones are marked. What is not drawn (invalid, not reached, without a value, not positive on a
+logarithmic axis) is named in a note under the axes.
 """
 
 import textwrap
+from collections.abc import Iterator
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
-from solver.status import StateStatus
-from workflow.data.states import COLUMN, CONTRACTION, FORCE, GOOD, REFERENCE, error_of
+from solver.status import Flag, StateStatus
+from workflow.data.states import (
+    FLAGS,
+    GOOD,
+    REFERENCE,
+    SHOWN,
+    STRETCH,
+    SUSPECT,
+    error_of,
+)
 from workflow.figures.labels import SERIES, shown
-from workflow.figures.style import COMPARED, SOFT, SOURCES, grow, legend, series
+from workflow.figures.style import SOFT, compared, grow, in_order, labelled, legend, look_of, series
 
-NOT_DRAWN = (StateStatus.INVALID_STATE.value, StateStatus.NOT_REACHED.value)
+Array = NDArray[np.float64]
+UNSTABLE = StateStatus.UNSTABLE.value
 OPEN: dict[str, Any] = {
     "linestyle": "none",
     "marker": "o",
@@ -25,50 +38,84 @@ OPEN: dict[str, Any] = {
     "zorder": 3,
     "label": "unstable",
 }
-DIAMETER_INSIDE = COLUMN["inner_diameter_inflated"]
+MARKS: dict[str, dict[str, Any]] = {
+    Flag.OVERSTRAINED: {"marker": "x", "markersize": 6, "label": "overstrained"},
+    Flag.SMOOTHED: {"marker": "|", "markersize": 9, "label": "smoothed"},
+}
+MEANING = {
+    Flag.OVERSTRAINED: "beyond a limit of the material",
+    Flag.SMOOTHED: "the smoothing of slack threads carries a share of the force",
+}
+NO_VALUE, NO_STRESS, NOT_POSITIVE = "no_value", "no_stress", "not_positive"
+WORDS = {  # what is said of states that are not drawn: of one, of several
+    StateStatus.INVALID_STATE.value: ("invalid state", "invalid states"),
+    StateStatus.NO_ROOT.value: ("no root: the force has no zero", "no roots"),
+    NO_VALUE: ("state without a value", "states without a value"),
+    NO_STRESS: ("state without a stress in a section", "states without a stress in a section"),
+    "unstable_state": ("unstable state", "unstable states"),
+    NOT_POSITIVE: ("state not above zero", "states not above zero"),
+}
+STRETCHED = 1.05  # a thread stretch that few threads stand
+SAME = 1e-6  # of the largest value: curves that differ by less are one line
+BAND = "_band"
 CHARACTERS = 18  # of a note, per inch of figure
-NOTE_LINE = 0.14  # inch
+NOTE_LINE = 0.12  # inch
 
 
 def by_source(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
     """One curve for each model, muscle, variant and reference map; ``style`` goes before theirs."""
-    for source in SOURCES:
+    several = [name for name in ("muscle", "variant") if rows[name].nunique() > 1]
+    for source in in_order(rows["source"]):
         found = rows[rows["source"] == source].groupby(["muscle", "variant"], dropna=False)
         for number, (key, each) in enumerate(found):
-            name = ", ".join(map(str, key)) if len(found) > 1 else ""
+            named = dict(zip(("muscle", "variant"), key, strict=True))
+            name = ", ".join(str(named[k]) for k in several if pd.notna(named[k]))
             curve(ax, each, x, y, **style_of(source, name, number) | style)
 
 
 def by_series(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
     """One curve for each series and model: colour and marker by series, line by model."""
-    for number, (_, each) in enumerate(rows.groupby(SERIES, sort=False)):
-        for source, look in COMPARED.items():
-            one = each[each["source"] == source]
-            if len(one):
-                step = max(1, len(one) // 5)
-                apart = {"markevery": (number % step, step)} if "marker" not in look else {}
-                curve(ax, one, x, y, **series(number) | apart | look | style)
+    for number, (name, each) in enumerate(rows.groupby(SERIES, sort=False)):
+        for source in in_order(each["source"]):
+            one, look = each[each["source"] == source], compared(source, number)
+            step = max(1, len(one) // 5)
+            apart = {"markevery": (number % step, step)} if "marker" not in look else {}
+            label = {"label": f"_{look_of(source)['label']}, {name}"}
+            curve(ax, one, x, y, **series(number) | apart | look | label | style)
 
 
 def series_legend(figure: Figure, table: pd.DataFrame) -> None:
-    """Legend of ``by_series`` above the axes: the series, then the models."""
+    """Legend of ``by_series`` above the axes: the series, then the models and the marks."""
     named = [
         Line2D([], [], **series(number), label=name)
         for number, name in enumerate(table[SERIES].unique())
     ]
     models = [
-        Line2D([], [], color=SOFT, **look, label=SOURCES[source]["label"])
-        for source, look in COMPARED.items()
-        if (table["source"] == source).any()
+        Line2D([], [], color=SOFT, **compared(source), label=look_of(source)["label"])
+        for source in in_order(table["source"])
     ]
-    if (table["status"] == StateStatus.UNSTABLE.value).any():
+    if (table["status"] == UNSTABLE).any():
         models.append(Line2D([], [], color=SOFT, **OPEN))
-    legend(figure, [*named, *models])
+    for flag, look in MARKS.items():
+        if _flagged(table, flag).any():
+            models.append(Line2D([], [], color=SOFT, linestyle="none", **look))
+    legend(figure, named, models)
+
+
+def source_legend(figure: Figure, axes: Any) -> None:
+    """Legend of ``by_source`` above the axes: models, variants and maps, then the marks."""
+    marks = {OPEN["label"], *(look["label"] for look in MARKS.values())}
+    handles = labelled(axes)
+    legend(
+        figure,
+        [handle for handle in handles if handle.get_label() not in marks],
+        [handle for handle in handles if handle.get_label() in marks],
+    )
 
 
 def style_of(source: str, name: str, number: int) -> dict[str, Any]:
     """Style of the n-th curve of a model or map, called ``name``; the first has the plain line."""
-    style = SOURCES[source]
+    style = look_of(source)
     if name:
         style = style | {"label": f"{style['label']}, {name}"}
     if number > 0:
@@ -78,77 +125,202 @@ def style_of(source: str, name: str, number: int) -> dict[str, Any]:
 
 def curve(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
     """The stops of one curve, in the order of ``x``; a map has markers at its own points."""
-    rows = rows[rows["point"] != "zero force"].sort_values(x)
+    stops = (rows["point"] != "zero force") & (rows["status"] != SUSPECT)
+    rows = rows[stops].sort_values(x)
     good = rows["status"].isin([GOOD, REFERENCE])
     values = rows[y].where(good).to_numpy(dtype=float)
+    if ax.get_yscale() == "log":
+        values = np.where(values > 0, values, np.nan)
     if np.isfinite(values).any():
         own = np.flatnonzero(rows["point"] == "tabulated").tolist()
         every = {"markevery": own} if (rows["status"] == REFERENCE).any() else {}
-        ax.plot(rows[x], values, **every | style)
-        _band(ax, rows, x, y, values, style)
+        (line,) = ax.plot(rows[x], values, **every | style)
+        _band(ax, rows, x, y, values, line)
         if not every:
-            _dot_lonely(ax, rows[x].to_numpy(dtype=float), values, style)
-    unstable = rows[rows["status"] == StateStatus.UNSTABLE.value]
+            _dot_lonely(ax, rows[x].to_numpy(dtype=float), values, line)
+    unstable = rows[rows["status"] == UNSTABLE]
     if len(unstable):
         ax.plot(unstable[x], unstable[y], color=style["color"], **OPEN)
+    for flag, look in MARKS.items():
+        flagged = rows[_flagged(rows, flag)]
+        if len(flagged):
+            mark = look | {"color": style["color"], "linestyle": "none", "zorder": 4}
+            ax.plot(flagged[x], flagged[y], **mark)
 
 
-def _band(ax: Any, rows: pd.DataFrame, x: str, y: str, values: np.ndarray, style: Any) -> None:
-    """The discretisation error around a curve, if it is known; mostly narrower than the line."""
+def _flagged(rows: pd.DataFrame, flag: str) -> pd.Series:
+    """Which rows of states that are drawn have a flag."""
+    if FLAGS not in rows:
+        return pd.Series(False, rows.index)
+    flags = rows[FLAGS].fillna("").map(lambda words: flag in str(words).split())
+    return flags.astype(bool) & rows["status"].isin(SHOWN)
+
+
+def _band(ax: Any, rows: pd.DataFrame, x: str, y: str, values: Array, line: Line2D) -> None:
+    """The discretisation error around a curve, where it is known."""
     errors = rows.get(error_of(y))
-    if errors is not None and errors.max() > 0:
-        error = errors.to_numpy(dtype=float)
-        band = {"color": style["color"], "alpha": 0.3, "linewidth": 0, "label": "_band"}
-        ax.fill_between(rows[x], values - error, values + error, **band)
+    if errors is None:
+        return
+    error = errors.to_numpy(dtype=float)
+    low, high = values - error, values + error
+    known = np.isfinite(low) & (error > 0)
+    if ax.get_yscale() == "log":
+        known &= low > 0  # a band without a lower end would hang from nowhere
+    if known.any():
+        look = {"color": line.get_color(), "alpha": 0.3, "linewidth": 0, "label": BAND}
+        band = ax.fill_between(rows[x], low, high, where=known, **look)
+        band.around = line
 
 
-def _dot_lonely(ax: Any, x: np.ndarray, y: np.ndarray, style: dict[str, Any]) -> None:
-    """A state without a neighbour on the line gets a dot."""
+def _dot_lonely(ax: Any, x: Array, y: Array, line: Line2D) -> None:
+    """A state without a neighbour on the line gets a dot, as wide as the line and wider."""
     known = np.pad(np.isfinite(y), 1)
     lonely = known[1:-1] & ~known[:-2] & ~known[2:]
     if lonely.any():
-        ax.plot(x[lonely], y[lonely], ".", color=style["color"], label="_lonely")
+        look = {"color": line.get_color(), "alpha": line.get_alpha(), "label": "_lonely"}
+        ax.plot(x[lonely], y[lonely], "o", markersize=2 + 1.5 * line.get_linewidth(), **look)
 
 
-def note_gaps(figure: Figure, table: pd.DataFrame, by: list[str], x: str, text: str = "") -> None:
-    """Says under the axes which states are not drawn, curve by curve, and where along ``x``.
+def note_gaps(
+    figure: Figure,
+    table: pd.DataFrame,
+    by: list[str],
+    x: str,
+    text: str = "",
+    *,
+    y: str | None = None,
+    log: bool = False,
+) -> None:
+    """Says under the axes what they cannot: call it when all is drawn.
 
-    ``text`` is what else there is to say.
+    Which states are not drawn, curve by curve, and where along ``x``; which are flagged; how far
+    threads are stretched; which curves lie on each other; what a band is, where there is one.
+
+    Parameters
+    ----------
+    text : what else there is to say
+    y : the column that is drawn; what has no value in it is not drawn
+    log : whether it is drawn on a logarithmic axis
     """
-    missing = table[table["status"].isin(NOT_DRAWN)]
-    lines = []
-    for (source, *keys, status), rows in missing.groupby(["source", *by, "status"], sort=False):
-        named = [shown(column, key) for column, key in zip(by, keys, strict=True)]
-        count = f"{len(rows)} state{'s' if len(rows) > 1 else ''} {status.replace('_', ' ')}"
-        lines.append(f"{', '.join([SOURCES[source]['label'], *named])}: {count}{_at(rows[x], x)}")
-    text = f"{text} {_errors(table)}".strip()
-    if lines:
-        text = f"Not drawn: {'; '.join(lines)}. {text}"
-    if text:
-        note(figure, text)
+    said = [
+        _listed("Not drawn", table.assign(why=_reasons(table, y, log)), by, x),
+        *(_flags(table, flag) for flag in MARKS),
+        text,
+        _stretched(table),
+        _one_line(table, x, y) if y else "",
+        _bands(figure),
+    ]
+    if any(said):
+        note(figure, " ".join(sentence for sentence in said if sentence))
 
 
-def _errors(table: pd.DataFrame) -> str:
-    """How wide the bands of the FE curves are at most; nothing if there are none."""
-    largest: dict[Any, float] = {}
-    for column in (FORCE, DIAMETER_INSIDE, CONTRACTION):
-        error = error_of(column)
-        if error in table and column in table:
-            shares = table.groupby("source")[[error, column]].agg(lambda v: v.abs().max())
-            for source, share in (shares[error] / shares[column]).items():
-                if share > 0:
-                    largest[source] = max(share, largest.get(source, 0))
-    if not largest:
+def _reasons(table: pd.DataFrame, y: str | None, log: bool) -> pd.Series:
+    """Why a state is not drawn; empty for those that are."""
+    drawn = table["status"].isin([*SHOWN, REFERENCE, SUSPECT])
+    why = table["status"].where(~drawn, "")
+    if y is None:
+        return why
+    stop = table["point"] != "zero force"
+    why = why.mask(drawn & stop & table[y].isna(), NO_VALUE)
+    return why.mask(drawn & stop & (table[y] <= 0), NOT_POSITIVE) if log else why
+
+
+def _listed(title: str, table: pd.DataFrame, by: list[str], x: str) -> str:
+    """A sentence that counts the rows with a reason, curve by curve, and says where they are."""
+    keys = ["source", *by, *(["variant"] if _varies(table, "variant") else [])]
+    rows = table[table["why"] != ""]
+    curves_of: dict[str, list[str]] = {}
+    for (source, *values, why), found in rows.groupby([*keys, "why"], sort=False, dropna=False):
+        named = [shown(c, v) for c, v in zip(keys[1:], values, strict=True) if pd.notna(v)]
+        curve_name = ", ".join(dict.fromkeys([look_of(source)["label"], *named]))
+        said = f"{_counted(why, len(found))}{_at(found[x], x)}"
+        curves_of.setdefault(said, []).append(curve_name)
+    lines = [f"{' and '.join(names)}: {said}" for said, names in curves_of.items()]
+    return f"{title}: {'; '.join(lines)}." if lines else ""
+
+
+def _varies(table: pd.DataFrame, column: str) -> bool:
+    return column in table and table[column].nunique() > 1
+
+
+def _counted(why: str, count: int) -> str:
+    words = str(why).replace("_", " ")
+    one, several = WORDS.get(why, (f"state {words}", f"states {words}"))
+    if why == StateStatus.NO_ROOT.value and count == 1:
+        return one
+    return f"{count} {one if count == 1 else several}"
+
+
+def _flags(table: pd.DataFrame, flag: str) -> str:
+    """How many states of each model have a flag."""
+    counts = table[_flagged(table, flag)].groupby("source").size()
+    each = [f"{counts[source]} ({look_of(source)['label']})" for source in in_order(counts.index)]
+    return f"{flag.capitalize()}, {MEANING[Flag(flag)]}: states {', '.join(each)}." if each else ""
+
+
+def _stretched(table: pd.DataFrame) -> str:
+    """Names threads that are stretched further than most stand."""
+    if STRETCH not in table or not (table[STRETCH] > STRETCHED).any():
         return ""
-    each = (f"{SOURCES[str(s)]['label']} {100 * v:.2g} %" for s, v in sorted(largest.items()))
-    return f"Bands: discretisation error, of the largest value at most {', '.join(each)}."
+    largest = table.groupby("source")[STRETCH].max()
+    each = [
+        f"{100 * (largest[source] - 1):.0f} % ({look_of(source)['label']})"
+        for source in in_order(largest[largest > STRETCHED].index)
+    ]
+    return f"Threads are stretched by up to {', '.join(each)}: more than many threads stand."
+
+
+def _one_line(table: pd.DataFrame, x: str, y: str) -> str:
+    """Names series of a model that lie on each other."""
+    if SERIES not in table:
+        return ""
+    found = []
+    for source, rows in table[table["status"] == GOOD].groupby("source", sort=False):
+        curves = {
+            name: each.groupby(x)[y].mean() for name, each in rows.groupby(SERIES, sort=False)
+        }
+        for (one, a), (other, b) in combinations(curves.items(), 2):
+            both = pd.concat([a, b], axis=1).dropna()
+            if len(both) < 2 or len(both) < max(a.count(), b.count()):
+                continue
+            if (both.iloc[:, 0] - both.iloc[:, 1]).abs().max() <= SAME * both.abs().max().max():
+                found.append(f"{look_of(source)['label']} for {one} and {other}")
+    return f"One and the same line: {'; '.join(found)}." if found else ""
+
+
+def _bands(figure: Figure) -> str:
+    """What the bands are; one that is nowhere wider than its line is taken away."""
+    wide = False
+    for band in _all_bands(figure):
+        width = _thickness(band) * 72 / figure.dpi
+        if width > band.around.get_linewidth():
+            wide = True
+        else:
+            band.remove()
+    return "A shaded band around a curve is its discretisation error." if wide else ""
+
+
+def _all_bands(figure: Figure) -> Iterator[Any]:
+    for ax in figure.axes:
+        yield from [found for found in ax.collections if found.get_label() == BAND]
+
+
+def _thickness(band: Any) -> float:
+    """Largest height of a band within the axes [pixel]."""
+    low, high = band.axes.bbox.y0, band.axes.bbox.y1
+    largest = 0.0
+    for path in band.get_paths():
+        x, y = band.axes.transData.transform(path.vertices).T
+        heights = pd.Series(np.clip(y, low, high)).groupby(x.round(3))
+        largest = max(largest, float((heights.max() - heights.min()).max()))
+    return largest
 
 
 def note(figure: Figure, text: str) -> None:
     """Small print under a figure, which grows for it."""
     width = figure.get_size_inches()[0]
     lines = textwrap.wrap(text, int(width * CHARACTERS))
-    grow(figure, bottom=NOTE_LINE * (len(lines) + 0.5))
+    grow(figure, bottom=NOTE_LINE * (len(lines) + 1))
     corner = 0.1 / width, 0.06 / figure.get_size_inches()[1]
     figure.text(*corner, "\n".join(lines), color=SOFT, fontsize=7, va="bottom")
 

@@ -1,7 +1,7 @@
 """The parametric muscle in three dimensions: tube, caps and all threads of both layers.
 
 It replaces the paper's CATIA model; a number changed in the study changes the drawing. Of several
-muscles in the scene the first is drawn.
+muscles in the scene the first is drawn, and the others are named.
 """
 
 import math
@@ -43,4 +43,5 @@ def draw(table: pd.DataFrame) -> Figure:
             layer_diameters=(float(row[LAYERS[0]]), float(row[LAYERS[1]])),
         )
     lengths = {length: float(row[f"{length} [mm]"]) for length in LENGTHS}
-    return draw_muscle(Muscle(**lengths, braid=braid))
+    others = [str(name) for name in table["muscle"].iloc[1:]]
+    return draw_muscle(Muscle(**lengths, braid=braid), str(row["muscle"]), others)

@@ -2,23 +2,32 @@
 
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from workflow.data import reference
+from workflow.data import paper, reference
 from workflow.data.states import CONTRACTION, FORCE, GOOD, PRESSURE, reference_at, states
 from workflow.figures import curves
-from workflow.figures.labels import constants
-from workflow.figures.style import COLUMN_WIDTH, SOFT, SOURCES, labelled, legend, panels
+from workflow.figures.labels import constants, shown
+from workflow.figures.style import COLUMN_WIDTH, SOFT, look_of, panels
 
-PAPER_THRESHOLD = 0.15  # MPa
+PAPER = "the paper's threshold [MPa]"
 
 
 def table(data: Any) -> pd.DataFrame:
-    """States of all models, that of zero force among them, and both maps."""
-    maps = reference.load().values()
-    measured = [reference_at(maps, held, data.scene.swept) for held in data.scene.held]
-    return pd.concat([states(data, ["force"]), *measured], ignore_index=True)
+    """States of all models, that of zero force among them, and the muscle's force maps."""
+    frames = [states(data, ["force"])]
+    maps = reference.of_muscles({name: m.reference for name, m in data.studied.items()})
+    for muscle, own in maps.items():
+        for held in data.scene.held:
+            measured = reference_at(own.values(), held, data.scene.swept)
+            frames.append(measured.assign(muscle=muscle))
+    every = pd.concat(frames, ignore_index=True)
+    normal = [name for name, muscle in data.studied.items() if paper.is_normal(muscle)]
+    stated = every["muscle"].isin(normal) & np.isclose(every[CONTRACTION], paper.AT_CONTRACTION)
+    every[PAPER] = np.where(stated, paper.THRESHOLD, np.nan)
+    return every
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -30,30 +39,34 @@ def draw(table: pd.DataFrame) -> Figure:
         here = table[table[CONTRACTION] == contraction]
         curves.by_source(ax, here, PRESSURE, FORCE)
         ax.axhline(0, color="black", linewidth=0.7)
-        ax.axvline(PAPER_THRESHOLD, color=SOFT, linewidth=1.0, linestyle=":")
-        _mark_thresholds(ax, here[(here["point"] == "zero force") & (here["status"] == GOOD)])
-        ax.set_title(constants(here, [CONTRACTION]))
+        for pressure in here[PAPER].dropna().unique():
+            style = {"color": SOFT, "linewidth": 1.0, "linestyle": ":"}
+            ax.axvline(pressure, label=f"threshold in the paper, {pressure:g} MPa", **style)
+        for _, row in _thresholds(here).iterrows():
+            look = {"color": look_of(row["source"])["color"], "markersize": 5, "zorder": 3}
+            ax.plot(row[PRESSURE], 0, "D", label="_threshold", **look)
+        ax.set_title(constants(here, ["muscle", CONTRACTION]))
         ax.set_xlabel("pressure [MPa]")
     axes[0, 0].set_ylabel("force [N]")
-    legend(figure, labelled(axes))
-    curves.note_gaps(figure, table, [CONTRACTION], PRESSURE)
+    curves.source_legend(figure, axes)
+    told_apart = [name for name in ("muscle", CONTRACTION) if table[name].nunique() > 1]
+    text = _said(_thresholds(table), told_apart)
+    curves.note_gaps(figure, table, told_apart or [CONTRACTION], PRESSURE, text, y=FORCE)
     return figure
 
 
-def _mark_thresholds(ax: Any, rows: pd.DataFrame) -> None:
-    """Threshold pressures on the axis of zero force, written beside each other."""
-    lines = [f"threshold in the paper {PAPER_THRESHOLD:g} MPa"]
-    for source, pressure in zip(rows["source"], rows[PRESSURE], strict=True):
-        style = SOURCES[source]
-        ax.plot(pressure, 0, "D", color=style["color"], markersize=5, zorder=3, label="_threshold")
-        lines.append(f"{style['label']} {pressure:.4f} MPa")
-    ax.annotate(
-        "\n".join(lines),
-        (PAPER_THRESHOLD, 0),
-        (0.97, 0.03),
-        textcoords="axes fraction",
-        ha="right",
-        va="bottom",
-        fontsize=7.5,
-        arrowprops={"arrowstyle": "-", "color": SOFT, "linewidth": 0.7, "shrinkB": 4},
-    )
+def _thresholds(table: pd.DataFrame) -> pd.DataFrame:
+    return table[(table["point"] == "zero force") & (table["status"] == GOOD)]
+
+
+def _said(thresholds: pd.DataFrame, told_apart: list[str]) -> str:
+    """The threshold pressures in words."""
+    if thresholds.empty:
+        return ""
+    columns = told_apart + (["variant"] if thresholds["variant"].nunique() > 1 else [])
+    each = [
+        ", ".join([look_of(row["source"])["label"], *(shown(c, row[c]) for c in columns)])
+        + f" {row[PRESSURE]:.4g} MPa"
+        for _, row in thresholds.iterrows()
+    ]
+    return f"Diamonds are threshold pressures: {'; '.join(each)}."

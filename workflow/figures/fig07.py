@@ -6,15 +6,19 @@ where the muscle pulls. Beside it, by how much it exceeds the inflated diameter.
 
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from workflow.data import paper
 from workflow.data.states import (
     COLUMN,
     CONTRACTION,
     DIAMETER,
+    FLAGS,
     FORCE,
     PRESSURE,
+    STRETCH,
     describe,
     error_of,
     states,
@@ -28,9 +32,8 @@ INFLATED, EQUIVALENT = COLUMN["inner_diameter_inflated"], COLUMN["equivalent_dia
 ERROR = error_of(INFLATED)
 EXCESS = "equivalent / inflated - 1 [1]"
 NAMES = {EQUIVALENT: "equivalent", INFLATED: "inflated"}
-STATE = ["source", "muscle", "variant", "point", CONTRACTION, PRESSURE, "status"]
-CORNER = {"ha": "right", "va": "top"}
-PAPER_EXCESS = 0.156  # on average above the threshold pressure
+STATE = ["source", "muscle", "variant", "point", CONTRACTION, PRESSURE, STRETCH, "status", FLAGS]
+PAPER = "the paper's mean excess [1]"
 
 
 def table(data: Any) -> pd.DataFrame:
@@ -40,7 +43,10 @@ def table(data: Any) -> pd.DataFrame:
     every[EQUIVALENT] = every[EQUIVALENT].where(every[FORCE] > 0)
     every[EXCESS] = every[EQUIVALENT] / every[INFLATED] - 1
     every[SERIES] = series(every, ["muscle", CONTRACTION])
-    return every[[*STATE, SERIES, INITIAL, *NAMES, ERROR, EXCESS]]
+    normal = [name for name, muscle in data.studied.items() if paper.is_normal(muscle)]
+    stated = every["muscle"].isin(normal) & np.isclose(every[CONTRACTION], paper.AT_CONTRACTION)
+    every[PAPER] = np.where(stated, paper.EXCESS, np.nan)
+    return every[[*STATE, SERIES, INITIAL, *NAMES, ERROR, EXCESS, PAPER]]
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -54,22 +60,27 @@ def draw(table: pd.DataFrame) -> Figure:
     several = table[SERIES].nunique() > 1
     melted[SERIES] = quantity + ", " + melted[SERIES] if several else quantity
     curves.by_series(left, melted, PRESSURE, "diameter [mm]")
+    low, high = left.get_ylim()
     for initial in table[INITIAL].unique():
         left.axhline(initial, color="black", linewidth=1.0, linestyle=(0, (5, 2)))
-        end = left.get_xlim()[1]
-        left.annotate("initial", (end, initial), (-4, -4), textcoords="offset points", **CORNER)
+        near = initial - low < 0.1 * (high - low)  # the axis: no room below
+        side = {"ha": "right", "va": "bottom" if near else "top"}
+        place = (left.get_xlim()[1], initial), (-4, 3 if near else -4)
+        left.annotate("initial", *place, textcoords="offset points", **side)
     curves.by_series(right, table, PRESSURE, EXCESS)
-    right.axhline(PAPER_EXCESS, color=SOFT, linewidth=1.0, linestyle=":")
-    right.annotate(
-        "the paper's mean, 15.6 %", (0.0, PAPER_EXCESS), (0, 3), textcoords="offset points"
-    )
+    for mean in table[PAPER].dropna().unique():
+        right.axhline(mean, color=SOFT, linewidth=1.0, linestyle=":")
+        text = f"the paper's mean, {100 * mean:.1f} %"
+        right.annotate(text, (0.0, mean), (0, 3), textcoords="offset points")
     right.axhline(0, color="black", linewidth=0.7)
-    left.set_title(constants(table, [CONTRACTION]))
+    left.set_title(constants(table, ["muscle", CONTRACTION]))
     left.set_ylabel("diameter [mm]")
     right.set_ylabel("equivalent over inflated − 1 [%]")
     percent(right.yaxis)
     for ax in (left, right):
         ax.set_xlabel("pressure [MPa]")
     curves.series_legend(figure, melted)
-    curves.note_gaps(figure, table, [CONTRACTION], PRESSURE)
+    told_apart = [SERIES] if several else [CONTRACTION]
+    text = "The equivalent diameter is shown where the muscle pulls."
+    curves.note_gaps(figure, table, told_apart, PRESSURE, text, y=INFLATED)
     return figure

@@ -7,8 +7,10 @@ from matplotlib.figure import Figure
 
 from workflow.data.states import CONTRACTION, FORCE, PRESSURE, states
 from workflow.figures import curves
-from workflow.figures.labels import SERIES, series
+from workflow.figures.labels import SERIES, constants, muscles, series
 from workflow.figures.style import COLUMN_WIDTH, panels, percent
+
+LOWEST = -0.12  # contraction; Eq. (1) goes far down at low pressure
 
 
 def table(data: Any) -> pd.DataFrame:
@@ -24,10 +26,14 @@ def draw(table: pd.DataFrame) -> Figure:
     ax = axes[0, 0]
     curves.by_series(ax, table, PRESSURE, CONTRACTION)
     ax.axhline(0, color="black", linewidth=0.7)
+    ax.set_title(constants(table, ["muscle", FORCE]) or "constant loads")
     ax.set_xlabel("pressure [MPa]")
     ax.set_ylabel("contraction [%]")
-    ax.set_ylim(bottom=max(ax.get_ylim()[0], -0.12))  # Eq. (1) goes far down at low pressure
+    ax.set_ylim(bottom=max(ax.get_ylim()[0], LOWEST))
     percent(ax.yaxis, 0.05)
     curves.series_legend(figure, table)
-    curves.note_gaps(figure, table, [SERIES], PRESSURE)
+    text = muscles(table)
+    if (table[CONTRACTION] < LOWEST).any():
+        text += f" Curves go on below {100 * LOWEST:g} %."
+    curves.note_gaps(figure, table, [SERIES], PRESSURE, text.strip(), y=CONTRACTION)
     return figure

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from workflow.data.states import CONTRACTION, FORCE, PRESSURE, describe, states
 from workflow.figures import curves
-from workflow.figures.labels import SERIES, constants, series
+from workflow.figures.labels import SERIES, constants, muscles, series
 from workflow.figures.style import COLUMN_WIDTH, panels, percent
 
 
@@ -25,10 +25,10 @@ def draw(table: pd.DataFrame) -> Figure:
     ax = axes[0, 0]
     curves.by_series(ax, table, CONTRACTION, FORCE)
     ax.axhline(0, color="black", linewidth=0.7)
-    ax.set_title(constants(table, [PRESSURE]))
+    ax.set_title(constants(table, ["muscle", PRESSURE]))
     ax.set_xlabel("contraction [%]")
     ax.set_ylabel("force [N]")
     percent(ax.xaxis, 0.05)
     curves.series_legend(figure, table)
-    curves.note_gaps(figure, table, [SERIES], CONTRACTION)
+    curves.note_gaps(figure, table, [SERIES], CONTRACTION, muscles(table), y=FORCE)
     return figure

@@ -40,6 +40,17 @@ def series(table: pd.DataFrame, columns: Iterable[str], *, apart: bool = True) -
     return names
 
 
+def muscles(table: pd.DataFrame) -> str:
+    """Which muscles the series are, as a sentence; nothing of one alone, which is in the title."""
+    found = table.dropna(subset=["muscle"]).groupby(SERIES, sort=False)["muscle"].unique()
+    unsaid = [
+        f"{name} is {', '.join(each)}"
+        for name, each in found.items()
+        if not all(muscle in str(name).split(", ") for muscle in each)
+    ]
+    return f"Muscles: {'; '.join(unsaid)}." if table["muscle"].nunique() > 1 and unsaid else ""
+
+
 def _joined(table: pd.DataFrame, columns: list[str]) -> pd.Series:
     return table[columns].apply(lambda row: ", ".join(map(shown, columns, row)), axis=1)
 

@@ -1,6 +1,8 @@
 """A picture of the muscle (the paper's Fig. 3): its threads laid open in steps, and its numbers."""
 
 import math
+import textwrap
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -25,7 +27,8 @@ from workflow.figures.muscle_painting import (
     project,
 )
 
-WIDTH, HEIGHT = 7.0, 3.6  # of the figure [inch]
+WIDTH, HEIGHT = 7.0, 3.8  # of the figure [inch]
+TITLE = (0.1, 6.9, 3.72)  # left, right and top of the name and of what is not drawn [inch]
 WHOLE = (0.1, 2.5, 6.8, 0.95)  # left, bottom, width, height of the axes [inch]
 OPENED = (0.1, 0.4, 2.75, 1.5)
 SECTION = (3.1, 0.65, 1.2, 1.2)
@@ -40,9 +43,10 @@ BORE, CUT, SOFT = 0.2, 0.88, "0.4"  # greys
 LINE: dict[str, Any] = {"color": "black", "linewidth": EDGE}
 
 
-def draw(muscle: Muscle) -> Figure:
+def draw(muscle: Muscle, name: str = "", others: Sequence[str] = ()) -> Figure:
     """Draw the muscle whole, a piece of it and its wall enlarged, and its numbers.
 
+    Above stands its name, and which ``others`` are not drawn.
     Layers are laid open in steps: the tube, without its outside the outer layer, and without what
     is outside of it the inner layer.
     """
@@ -68,6 +72,12 @@ def draw(muscle: Muscle) -> Figure:
 
     _section(figure, muscle)
     _write_numbers(figure, muscle)
+    begin, end, top = TITLE
+    place: dict[str, Any] = {"va": "top", "fontsize": FONT}
+    figure.text(begin / WIDTH, top / HEIGHT, name, weight="bold", **place)
+    if others:
+        text = textwrap.shorten(f"not drawn: {', '.join(others)}", 90, placeholder=" …")
+        figure.text(end / WIDTH, top / HEIGHT, text, ha="right", color=SOFT, **place)
     return figure
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.colors import TwoSlopeNorm
+from matplotlib.colors import CenteredNorm
 from matplotlib.tri import Triangulation
 
 from workflow.data.stress import LARGEST, SMALLEST
@@ -13,20 +13,25 @@ from workflow.figures.style import SOFT
 
 COLOURS = "RdBu_r"
 SKIN = {"cmap": COLOURS, "shading": "gouraud", "rasterized": True}
-CAP = "z of the cap [mm]"
+CAP, WALL = "z of the cap [mm]", "wall_thickness [mm]"
 R, Z = "r [mm]", "z [mm]"
-NEAR = 16.0  # mm on this side of the cap that the enlarged views show
-INSIDE = 6.0  # mm beyond it, in the fitting
+NEAR = 8.0  # wall thicknesses on this side of the cap that the enlarged views show
+INSIDE = 3.0  # beyond it, in the fitting
 NOISE = 0.01  # of the largest stress: compression is hatched from there
-LINES = (  # of the lower panels: where, which stress, style
-    ("inner surface", LARGEST, {"color": "#0072b2", "linestyle": (0, (4, 1.5))}),
-    ("mean", LARGEST, {"color": "black", "linewidth": 2.0}),
-    ("outer surface", LARGEST, {"color": "#d55e00", "linestyle": (0, (1, 1.2))}),
-    ("mean", SMALLEST, {"color": "black", "linewidth": 0.8}),
+LINES = (  # of the lower panels: where, which stress, name, style
+    (
+        "inner surface",
+        LARGEST,
+        "largest: inner surface",
+        {"color": "#0072b2", "linestyle": (0, (4, 1.5))},
+    ),
+    ("mean", LARGEST, "mean", {"color": "black", "linewidth": 2.0}),
+    ("outer surface", LARGEST, "outer surface", {"color": "#d55e00", "linestyle": (0, (1, 1.2))}),
+    ("mean", SMALLEST, "smallest: mean", {"color": "black", "linewidth": 0.8}),
 )
 
 
-def whole(ax: Any, state: pd.DataFrame, norm: TwoSlopeNorm, last: bool) -> None:
+def whole(ax: Any, state: pd.DataFrame, norm: CenteredNorm, title: str) -> None:
     """Upper half cut, lower half from outside, both sides of mid-length."""
     corners = state[state["where"] == "wall"]
     outside = state[state["where"] == "outer surface"].sort_values(Z)
@@ -37,33 +42,35 @@ def whole(ax: Any, state: pd.DataFrame, norm: TwoSlopeNorm, last: bool) -> None:
         ax.plot(side * outside[Z], -outside[R], color=SOFT, linewidth=0.5)
     ax.axhline(0, color="black", linewidth=0.6, linestyle=(0, (12, 2, 2, 2)))
     ax.set_aspect("equal")
-    ax.set_title(state[SERIES].iloc[0], pad=1)
-    for text, place in (("cut", 0.75), ("outside", 0.25)):
-        ax.text(-0.01, place, text, transform=ax.transAxes, ha="right", va="center", fontsize=7)
-    ax.set_yticks([])
+    ax.set_title(title, pad=3)
+    radius = outside[R].max()
+    ax.set_yticks([-radius, 0, radius], [f"{radius:.3g}", "0", f"{radius:.3g}"], fontsize=7)
+    ax.set_ylabel("r [mm]", fontsize=7)
+    ax.set_xlabel("z from mid-length [mm]", fontsize=7, labelpad=1)
+    ax.tick_params(axis="x", labelsize=7, pad=1)
     ax.grid(visible=False)
     ax.spines[:].set_visible(False)
-    ax.tick_params(labelbottom=last, bottom=last)
 
 
-def near_cap(ax: Any, state: pd.DataFrame, norm: TwoSlopeNorm) -> None:
+def near_cap(ax: Any, state: pd.DataFrame, norm: CenteredNorm) -> None:
     """The wall near one cap, true to scale."""
     corners, cap = state[state["where"] == "wall"], state[CAP].iloc[0]
+    thick = state[WALL].iloc[0]
+    start, stop = cap - NEAR * thick, cap + INSIDE * thick
     mesh = _triangles(corners[Z], corners[R])
     ax.tripcolor(mesh, corners[LARGEST], norm=norm, **SKIN)
-    assert norm.vmax is not None
-    zero = -NOISE * norm.vmax
+    zero = -NOISE * norm.halfrange
     ax.tricontour(mesh, corners[LARGEST], [zero], colors="black", linewidths=0.6)
     ax.tricontourf(mesh, corners[LARGEST], [-1e3, zero], colors="none", hatches=["//////"])
     ax.axvline(cap, color=SOFT, linewidth=0.8)
     ax.text(cap, 0.97, " fitting", va="top", fontsize=7, transform=ax.get_xaxis_transform())
-    near = corners.loc[corners[Z].between(cap - NEAR, cap + INSIDE), R]
+    near = corners.loc[corners[Z].between(start, stop), R]
     near = near if len(near) else corners[R]  # a mesh may have no node so near
-    ax.set_xlim(cap - NEAR, cap + INSIDE)
-    ax.set_ylim(near.min() - 0.7, near.max() + 0.7)
+    ax.set_xlim(start, stop)
+    ax.set_ylim(near.min() - 0.35 * thick, near.max() + 0.35 * thick)
     ax.set_aspect("equal")
     ax.set_title(state[SERIES].iloc[0])
-    ax.tick_params(labelbottom=False, labelleft=ax.get_subplotspec().is_first_col())
+    ax.tick_params(labelbottom=False)
     if ax.get_subplotspec().is_first_col():
         ax.set_ylabel("r [mm]")
     ax.grid(visible=False)
@@ -71,9 +78,8 @@ def near_cap(ax: Any, state: pd.DataFrame, norm: TwoSlopeNorm) -> None:
 
 def along(ax: Any, state: pd.DataFrame) -> None:
     """Largest and smallest principal stress along the meridian near the cap."""
-    for where, stress, style in LINES:
+    for where, stress, label, style in LINES:
         rows = state[state["where"] == where].sort_values(Z)
-        label = where if stress == LARGEST else "mean of the smallest"
         ax.plot(rows[Z], rows[stress], **style, label=label)
     ax.axhline(0, color="black", linewidth=0.7)
     ax.axvline(state[CAP].iloc[0], color=SOFT, linewidth=0.8)

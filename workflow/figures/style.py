@@ -5,15 +5,16 @@ matplotlib's parameters; ``save`` writes the same bytes for the same figure.
 """
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Literal
 
 import matplotlib
-import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
 from matplotlib.ticker import MultipleLocator, PercentFormatter
+from matplotlib.transforms import ScaledTranslation
 
 from geometry.files import aside
 
@@ -55,6 +56,12 @@ matplotlib.rcParams.update(
 SOURCES: dict[str, dict[str, Any]] = {  # models and reference maps
     "geometric": {"label": "Eq. (1)", "color": "0.45", "linestyle": (0, (5, 2))},
     "cylinder": {"label": "cylinder", "color": "#cc79a7", "linestyle": (0, (5, 1, 1, 1))},
+    "cell": {
+        "label": "FE cell of the braid",
+        "color": "#b8860b",
+        "linewidth": 1.2,
+        "linestyle": (0, (3, 1, 1, 1, 1, 1)),
+    },
     "solid": {"label": "FE solid", "color": "#5ba4d6", "linewidth": 2.8},
     "membrane": {"label": "FE membrane", "color": "black", "linewidth": 1.1},
     "festo_musclesim": {
@@ -71,8 +78,9 @@ SOURCES: dict[str, dict[str, Any]] = {  # models and reference maps
     },
 }
 COMPARED: dict[str, dict[str, Any]] = {  # models where the colour says something else
-    "geometric": {"linewidth": 1.2, "linestyle": (0, (5, 2)), "marker": ""},
+    "geometric": {"linewidth": 1.2, "linestyle": (0, (4, 4)), "marker": ""},
     "cylinder": {"linewidth": 1.2, "linestyle": (0, (5, 1, 1, 1)), "marker": ""},
+    "cell": {"linewidth": 1.2, "linestyle": (0, (3, 1, 1, 1, 1, 1)), "marker": ""},
     "solid": {"linewidth": 2.8, "alpha": 0.5, "marker": ""},
     "membrane": {"linewidth": 1.1},
 }
@@ -84,6 +92,29 @@ SERIES: tuple[dict[str, Any], ...] = (  # muscles, loads, materials compared in 
     {"color": "black", "marker": "v"},
     {"color": "#b8860b", "marker": "P"},
 )
+
+
+OTHER: dict[str, Any] = {"color": "#7b3294", "linewidth": 1.2, "linestyle": (0, (1, 1))}
+
+
+def look_of(source: str) -> dict[str, Any]:
+    """Label, colour and line of a model or reference map; of one without a look, its name."""
+    return SOURCES.get(source, {"label": source, **OTHER})
+
+
+def compared(source: str, number: int = 0) -> dict[str, Any]:
+    """Line of a model in the n-th series; dashes of neighbours fill each other's gaps."""
+    look = COMPARED.get(source, {k: v for k, v in OTHER.items() if k != "color"} | {"marker": ""})
+    if "linestyle" not in look:
+        return look
+    offset, dashes = look["linestyle"]
+    return look | {"linestyle": (offset + number % 2 * sum(dashes) / 2, dashes)}
+
+
+def in_order(sources: Iterable[str]) -> list[str]:
+    """Models and maps in the order in which they are drawn, those without a look last."""
+    found = set(sources)
+    return [source for source in SOURCES if source in found] + sorted(found - set(SOURCES))
 
 
 def series(number: int) -> dict[str, Any]:
@@ -151,29 +182,37 @@ def labelled(axes: Any) -> list[Any]:
     return list(found.values())
 
 
-def legend(figure: Figure, handles: list[Any]) -> None:
-    """One legend above all axes, in as few rows as fit; the figure grows for it."""
-    labels = [str(handle.get_label()) for handle in handles]
+def legend(figure: Figure, *groups: list[Any]) -> None:
+    """Legends above all axes, one below the other, each read row by row; the figure grows."""
     width = figure.get_size_inches()[0]
-    columns = _columns(labels, width - LEFT)
-    rows = math.ceil(len(labels) / columns)
-    grow(figure, top=LEGEND_ROW * rows)
-    figure.legend(
-        handles=handles,
-        ncol=columns,
-        columnspacing=1.4,
-        borderpad=0.2,
-        borderaxespad=0.3,
-        loc="upper left",
-        bbox_to_anchor=((LEFT - 0.06) / width, 1.0),
-    )
+    groups = tuple(handles for handles in groups if handles)
+    shapes = [_columns([str(h.get_label()) for h in handles], width - LEFT) for handles in groups]
+    rows = [math.ceil(len(h) / c) for h, c in zip(groups, shapes, strict=True)]
+    grow(figure, top=LEGEND_ROW * sum(rows))
+    for k, (handles, columns) in enumerate(zip(groups, shapes, strict=True)):
+        below = ScaledTranslation(0, -LEGEND_ROW * sum(rows[:k]), figure.dpi_scale_trans)
+        figure.legend(
+            handles=_by_row(handles, columns),
+            ncol=columns,
+            columnspacing=1.4,
+            borderpad=0.2,
+            borderaxespad=0.3,
+            loc="upper left",
+            bbox_to_anchor=((LEFT - 0.06) / width, 1.0),
+            bbox_transform=figure.transFigure + below,  # a figure may grow below
+        )
+
+
+def _by_row(items: list[Any], columns: int) -> list[Any]:
+    """Reordered so that matplotlib, which fills column after column, shows them row by row."""
+    return [item for column in range(columns) for item in items[column::columns]]
 
 
 def _columns(labels: list[str], width: float) -> int:
     """Most columns of a legend that fit into a width [inch]."""
     for columns in range(len(labels), 1, -1):
-        filled = np.array_split([len(label) for label in labels], columns)  # as matplotlib does
-        if sum(HANDLE + CHARACTER * max(lengths) for lengths in filled) <= width:
+        longest = [max(map(len, labels[column::columns])) for column in range(columns)]
+        if sum(HANDLE + CHARACTER * length for length in longest) <= width:
             return columns
     return 1
 

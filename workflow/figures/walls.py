@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from workflow.data.states import CONTRACTION, FORCE, PRESSURE, WALL, describe, states
 from workflow.figures import curves
-from workflow.figures.labels import SERIES, constants, series
+from workflow.figures.labels import SERIES, constants, muscles, series
 from workflow.figures.style import COLUMN_WIDTH, panels
 
 
@@ -24,10 +24,10 @@ def draw(table: pd.DataFrame, y: str, constant: str) -> tuple[Figure, Any]:
     figure, axes = panels(COLUMN_WIDTH, 3.1)
     ax = axes[0, 0]
     curves.by_series(ax, table, WALL, y, markevery=1)
-    ax.set_title(constants(table, [PRESSURE, constant]))
+    ax.set_title(constants(table, ["muscle", PRESSURE, constant]))
     ax.set_xlabel("wall thickness [mm]")
     ax.set_xticks(sorted(table[WALL].unique()))
     ax.set_ylim(bottom=min(0, ax.get_ylim()[0]))
     curves.series_legend(figure, table)
-    curves.note_gaps(figure, table, [SERIES], WALL)
+    curves.note_gaps(figure, table, [SERIES], WALL, muscles(table), y=y)
     return figure, ax

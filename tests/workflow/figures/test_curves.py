@@ -85,18 +85,27 @@ def test_note_names_curve_status_and_place():
     curves.note_gaps(figure, table, [PRESSURE], CONTRACTION)
     text = figure.texts[0].get_text().replace("\n", " ")
     assert "FE solid, 0.2 MPa: 2 states not reached from 24 % to 25 %" in text
-    assert "FE membrane, 0.3 MPa: 1 state invalid state at 25 %" in text
+    assert "FE membrane, 0.3 MPa: 1 invalid state at 25 %" in text
     assert figure.get_size_inches()[1] > 3
+
+
+@pytest.mark.parametrize(("share", "said"), [(0.0015, False), (0.05, True)])
+def test_a_band_is_spoken_of_where_it_is_wider_than_its_line(share, said, small_scene):
+    table = states(small_scene(), ["force"])
+    table = table.assign(**{"force_error [N]": share * table[FORCE].max()})
+    figure = Figure(figsize=(7, 3))
+    ax = figure.add_subplot()
+    curves.by_source(ax, table, CONTRACTION, FORCE)
+    curves.note_gaps(figure, table, [PRESSURE], CONTRACTION, y=FORCE)
+    text = " ".join(text.get_text() for text in figure.texts)
+    assert ("discretisation error" in text) is said
+    assert len(ax.collections) == said
 
 
 def test_no_note_without_gaps(small_scene):
     figure = Figure(figsize=(7, 3))
     table = states(small_scene(), ["force"])
-    curves.note_gaps(figure, table, [PRESSURE], CONTRACTION)
-    (text,) = (text.get_text() for text in figure.texts)
-    assert text == ("Bands: discretisation error, of the largest value at most FE solid 0.15 %.")
-    figure = Figure(figsize=(7, 3))
-    curves.note_gaps(figure, table.drop(columns="force_error [N]"), [PRESSURE], CONTRACTION)
+    curves.note_gaps(figure, table, [PRESSURE], CONTRACTION, y=FORCE)
     assert figure.texts == []
     assert figure.get_size_inches()[1] == 3
 
@@ -115,7 +124,7 @@ def test_another_muscle_or_variant_is_another_line(small_scene):
     curves.by_source(ax, pd.concat([table, other]), CONTRACTION, FORCE)
     assert [len(line.get_xdata()) for line in ax.lines] == [5, 5]
     labels = [line.get_label() for line in ax.lines]
-    assert labels == ["FE solid, dmsp20, default", "FE solid, dmsp20, paper"]
+    assert labels == ["FE solid, default", "FE solid, paper"]
     assert ax.lines[0].get_linestyle() != ax.lines[1].get_linestyle()
 
 

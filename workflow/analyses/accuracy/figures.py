@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from workflow.analyses.accuracy.costs import MEMORY, PARTS, SOLVE, growth, joined
-from workflow.analyses.accuracy.settings import STEPS
+from workflow.analyses.accuracy.settings import MUSCLE, STEPS
 from workflow.figures import style
 from workflow.figures.style import SOFT, SOURCES
 
@@ -210,7 +210,8 @@ def _small_print(known: pd.DataFrame) -> str:
     """What the axes cannot say."""
     laws = growth(known)
     text = (
-        "0.3 MPa, 0 to 20 %. The error is the largest difference from what the fullest model "
+        f"{MUSCLE}, 0.3 MPa, 0 to 20 %. "
+        "The error is the largest difference from what the fullest model "
         "(solid) converges to, discretisation and modelling together. "
     )
     if RELATIVE in known:

@@ -38,5 +38,9 @@ def overview(table: pd.DataFrame) -> Figure:
     right.set(xscale="log", xlabel="unknowns × iterations, share left")
     right.set_title("work left")
     right.axvline(1, color=style.SOFT, linewidth=0.8)
+    unknown = rows[rows["force"].isna()]
+    if len(unknown):
+        each = ", ".join(f"{row['effect']} ({row['regime']})" for _, row in unknown.iterrows())
+        right.set_title(f"work left\nno force to compare: {each}", fontsize=7, wrap=True)
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     return figure

@@ -24,6 +24,7 @@ STATUS: dict[str, dict[str, Any]] = {
 MESH_MARKS = {1: "o", 2: "s", 3: "D"}
 GOOD_DET, GOOD_MESH = 0.5, 1e-3  # what the named cases are held to
 WORST = 6
+OTHER = {"color": "black", "marker": "d"}  # a status without a look
 
 
 def overview(table: pd.DataFrame) -> Figure:
@@ -92,7 +93,7 @@ def _cube(ax: Any, cube: pd.DataFrame) -> None:
             linestyle="",
             label=f"{status}: {len(rows)}",
             fillstyle="none" if status == "converged" else "full",
-            **STATUS[str(status)],
+            **STATUS.get(str(status), OTHER),
         )
     ax.set(xscale="log", yscale="log", ylabel="p / (C10 + C01)")
     ax.set_xlabel("p D² / (threads × EA), a thread strain")

@@ -55,7 +55,7 @@ def draw(table: pd.DataFrame) -> Figure:
             ax.set_ylim(-0.6, len(names) - 0.4)
             ax.grid(axis="y", visible=False)
             ax.set_title(title)
-    axes[0, 1].set_xlabel("percent per percent of the input, at the normal condition")
+    axes[0, 1].set_xlabel("percent per percent of the input, at the normal condition (dmsp20)")
     for ax, analysis in zip(axes[1:, 1], analyses[1:], strict=True):
         ax.set_xlabel(f"share of the variance [%], {analysis}")
     legend(figure, labelled(axes))
