@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from geometry.files import put
+
 
 @contextmanager
 def writing(
@@ -33,7 +35,7 @@ def writing(
         with _silent():
             _write(aside)
         finish(aside)
-        os.replace(aside, path)
+        put(aside, path)
     finally:
         aside.unlink(missing_ok=True)
         gmsh.finalize()

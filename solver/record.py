@@ -27,7 +27,6 @@ that the same case solved again gives the same bytes.
 import hashlib
 import io
 import json
-import os
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -36,6 +35,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.files import aside
 from solver.case import Case, digest
 from solver.status import CaseStatus, Flag, StateStatus
 
@@ -143,12 +143,8 @@ def write(path: Path, case: Case, solution: Solution) -> None:
     content = io.BytesIO()  # HDF5 crashes where it cannot write to the disk
     with h5py.File(content, "w", userblock_size=BLOCK) as file:
         _write(file, case, solution)
-    aside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        aside.write_bytes(sealed(content.getvalue()))
-        os.replace(aside, path)
-    finally:
-        aside.unlink(missing_ok=True)
+    with aside(path) as beside:
+        beside.write_bytes(sealed(content.getvalue()))
 
 
 def _write(file: Any, case: Case, solution: Solution) -> None:

@@ -1,12 +1,13 @@
-# What goes on around the jobs of a run: one run at a time, FreeFEM looked at before anything is
-# solved, and how far it is. No rules in this file.
+# What goes on around the jobs of a run: one run at a time, damaged results made again, FreeFEM looked
+# at before anything is solved, and how far it is. No rules in this file.
 #
 #   out  results/logs/progress.log
+from snakemake.dag import DAG
 from snakemake.logging import logger
 from snakemake.settings.enums import Quietness
 
 from solver import freefem
-from workflow.run import lock
+from workflow.run import damage, lock
 from workflow.run.progress import Progress, is_no_chatter
 
 PROGRESS = []  # of the run that goes on
@@ -46,6 +47,29 @@ def check_freefem():
             sys.exit(str(error))
 
 
+def notice_damage():
+    """Make results again that are missing or of another size, with all that is made of them.
+
+    Snakemake compares times, and looks for those files only that somebody asks for or reads.
+    """
+    found = damage.noticed()
+    check_others = DAG.check_incomplete  # of files that a killed run has left
+
+    async def check(dag):
+        dag.forcefiles.update(found)
+        await check_others(dag)
+
+    DAG.check_incomplete = check
+    return found
+
+
+def clear_damage():
+    """Make room where something else than a file stands in the place of a result."""
+    for path in DAMAGED:
+        if not Path(path).is_file():
+            damage.remove(Path(path))
+
+
 def look_once():
     """Look for ready jobs when one has ended, and not also every second, once more per job that has.
 
@@ -55,8 +79,12 @@ def look_once():
     workflow.scheduler.job_rate_limiter = None
 
 
+DAMAGED = notice_damage()
+
+
 onstart:
     lock.take(Path(".snakemake/run.lock"))
+    clear_damage()
     lock.tidy(Path("results"))
     check_freefem()
     follow()
