@@ -37,10 +37,13 @@ from numpy.typing import NDArray
 
 from geometry.files import aside
 from solver.case import Case, digest
+from solver.declared import Declared
 from solver.status import CaseStatus, Flag, StateStatus
 
 FILETYPE, LAYOUT = "muscle-case", 3
 BLOCK = 512  # bytes before the HDF5 data
+LARGEST = 2**31  # bytes of a record that is read
+PASSPORT = ("filetype", "layout", "key", "case", "status", "reason", "log", "unknowns")
 
 VARIABLES = {
     # name: (unit, long name)
@@ -171,7 +174,7 @@ def _write(file: Any, case: Case, solution: Solution) -> None:
         "note": solution.notes,
     }
     for name, texts in words.items():
-        states.create_dataset(name, data=[text.encode() for text in texts])
+        states.create_dataset(name, data=np.array([text.encode() for text in texts], "S"))
     for number, arrays in sorted(solution.fields.items()):
         group = file.create_group(f"fields/{number}")
         for name, values in arrays.items():
@@ -191,8 +194,8 @@ def read(path: Path) -> tuple[Case, Solution]:
     try:
         _check_seal(path)
         with h5py.File(path) as file:
-            return _read(file)
-    except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:
+            return _read(file, path.stat().st_size)
+    except (OSError, KeyError, OverflowError, RuntimeError, TypeError, ValueError) as error:
         raise NoRecord(f"{path}: no readable record ({error})") from error
 
 
@@ -211,6 +214,10 @@ def _check_seal(path: Path) -> None:
 
     HDF5 itself notices few flipped bytes, and some it does not survive.
     """
+    if path.exists() and not path.is_file():
+        raise ValueError("it is no file")
+    if path.stat().st_size > LARGEST:
+        raise ValueError(f"it has {path.stat().st_size} bytes; at most {LARGEST} are read")
     content = path.read_bytes()
     if content != sealed(content):
         kind = f"{FILETYPE} layout {LAYOUT}"
@@ -222,34 +229,44 @@ def _check_seal(path: Path) -> None:
         raise ValueError(f"it does not begin with {kind!r}")
 
 
-def _read(file: Any) -> tuple[Case, Solution]:
+def _read(file: Any, size: int) -> tuple[Case, Solution]:
     """Case and solution of an open file; raises ValueError and others if it is no record."""
-    found = file.attrs.get("filetype"), file.attrs.get("layout")
+    declared = Declared(file, size)
+    declared.attributes(PASSPORT)
+    found = file.attrs["filetype"], file.attrs["layout"]
     if found != (FILETYPE, LAYOUT):
         raise ValueError(f"expected {FILETYPE}, layout {LAYOUT}; found {found}")
     case = Case.from_json(file.attrs["case"])
     if case.key != file.attrs["key"]:
         raise ValueError(f"its case is {case.key}, its key {file.attrs['key']}")
-    states = file["states"]
-    for name, data in states.items():
-        if data.shape != (case.path.states,):
-            raise ValueError(
-                f"{name} has the shape {data.shape}, the path {case.path.states} states"
-            )
+    states, shape = declared.child(file, "states"), (case.path.states,)
+
+    def texts(name: str) -> list[str]:
+        return [text.decode() for text in declared.dataset(states, name, "S", shape)[()]]
+
     return case, Solution(
         status=CaseStatus(file.attrs["status"]),
         reason=file.attrs["reason"],
         log=file.attrs["log"],
         unknowns=int(file.attrs["unknowns"]),
-        states={name: states[name][()] for name in VARIABLES},
-        state_status=[StateStatus(text.decode()) for text in states["status"][()]],
-        flags=[frozenset(map(Flag, text.decode().split())) for text in states["flags"][()]],
-        notes=[text.decode() for text in states["note"][()]],
-        fields={
-            int(number): {name: data[()] for name, data in group.items()}
-            for number, group in file.get("fields", {}).items()
-        },
+        states={name: declared.dataset(states, name, "f", shape)[()] for name in VARIABLES},
+        state_status=[StateStatus(text) for text in texts("status")],
+        flags=[frozenset(map(Flag, text.split())) for text in texts("flags")],
+        notes=texts("note"),
+        fields=_read_fields(file, declared),
     )
+
+
+def _read_fields(file: Any, declared: Declared) -> dict[int, dict[str, NDArray[np.float64]]]:
+    """The fields of all states that have some."""
+    if "fields" not in file:
+        return {}
+    fields = declared.child(file, "fields")
+    groups = {int(number): declared.child(fields, number) for number in fields}
+    return {
+        number: {name: declared.dataset(group, name, "f", (None, None))[()] for name in group}
+        for number, group in groups.items()
+    }
 
 
 def code_digest() -> str:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import resource
 import time
 
 import h5py
@@ -298,4 +299,73 @@ def test_unknown_flag_of_a_state(written):
     with h5py.File(written, "a") as file:
         file["states/flags"][0] = b"odd"
     reseal(written)
+    assert_no_record(written)
+
+
+def compress(file):
+    del file["states/force"]
+    file.create_dataset("states/force", data=np.zeros(3), chunks=(3,), compression="gzip")
+
+
+def bomb(file):
+    """A field of 8 TB, of which the file holds nothing."""
+    file.create_dataset("fields/9/stress", (10**6, 10**6), "f8")
+
+
+def chunks(file):
+    file.create_dataset("fields/9/stress", (10**6, 10**6), "f8", chunks=(10**3, 10**3))
+
+
+def long_words(file):
+    del file["states/note"]
+    file.create_dataset("states/note", (3,), "S1000000000")
+
+
+def long_attribute(file):
+    del file.attrs["reason"]
+    file.attrs["reason"] = [""] * 1000
+
+
+def many_links(file):
+    """One table by a thousand names."""
+    file.create_dataset("fields/9/a", data=np.zeros((1000, 4)))
+    for number in range(1000):
+        file[f"fields/9/{number}"] = file["fields/9/a"]
+
+
+def outside(file):
+    del file["states/force"]
+    file["states/force"] = h5py.ExternalLink("other.h5", "/force")
+
+
+def raw(file):
+    del file["states/force"]
+    file.create_dataset("states/force", (3,), "f8", external=[("/dev/zero", 0, 24)])
+
+
+def objects(file):
+    del file["states/note"]
+    file.create_dataset("states/note", data=["x"] * 3, dtype=h5py.string_dtype())
+
+
+@pytest.mark.parametrize(
+    "change",
+    [compress, bomb, chunks, long_words, long_attribute, many_links, outside, raw, objects],
+)
+def test_what_is_declared_is_refused_before_it_is_read(written, change):
+    with h5py.File(written, "a") as file:
+        change(file)
+    assert written.stat().st_size < 10**6
+    reseal(written)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    assert_no_record(written)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 20 * 1024  # KB
+
+
+def test_an_endless_file_is_not_read(written):
+    with written.open("ab") as file:
+        file.truncate(10**12)
+    assert_no_record(written)
+    written.unlink()
+    os.mkfifo(written)
     assert_no_record(written)
