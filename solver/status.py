@@ -35,6 +35,7 @@ class CaseStatus(StrEnum):
     MESH_FAILED = "mesh_failed"
     TIMEOUT = "timeout"
     SOLVER_ERROR = "solver_error"
+    NOT_SOLVED = "not_solved"  # there is no record yet
 
 
 def state_status(kind: PathKind, states: dict[str, NDArray[np.float64]]) -> list[StateStatus]:

@@ -96,4 +96,5 @@ def test_the_vocabulary():
         "mesh_failed",
         "timeout",
         "solver_error",
+        "not_solved",
     ]

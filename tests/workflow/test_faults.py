@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+import xarray as xr
 
 from workflow.run.lock import MARK
 
@@ -331,3 +332,37 @@ def test_a_broken_freefem_stops_at_once(copy, tmp_path, script, said):
     assert said in output
     assert "Traceback" not in output
     assert "Solving" not in output
+
+
+def test_an_unfinished_study_is_gathered_and_drawn(project, copy):
+    """Beside the results, which the next run completes as if nobody had looked."""
+    cases = copy.folder / "results/cases"
+    lost = sorted(cases.glob("*.h5"))[:2]
+    for path in lost:
+        path.unlink()
+    (copy.folder / "results/dataset.nc").unlink()
+    status, output = copy.run("partial", program=("workflow",))
+    assert (status, "Traceback" in output) == (0, False)
+    assert "3 of 5 cases are solved" in output
+    partial = copy.folder / "results/partial"
+    with xr.open_datatree(partial / "dataset.nc", engine="h5netcdf") as tree:
+        found = tree["isobaric"].to_dataset()
+        asked = found.case_status.where(found.case_status != "", drop=True)
+        assert set(asked.values.ravel()) >= {"not_solved", "converged"}
+        gone = found.case_status == "not_solved"
+        assert bool(found.force.where(gone).isnull().all())
+        assert set(found.case.where(gone).values.ravel()) >= {path.stem for path in lost}
+    rows = (partial / "tables/failures.csv").read_text()
+    assert all(f"{path.stem}," in rows for path in lost)
+    assert rows.count("not_solved") == 2
+    assert "UNFINISHED" in "".join(p.read_text() for p in partial.glob("figures/*.svg"))
+    shutil.rmtree(partial)
+    finish(copy)
+    assert_undisturbed(copy, project)
+
+
+def test_a_report_without_pages_says_so(copy):
+    status, output = copy.run("--report", "report.html")
+    assert status == 1
+    assert "There is no page to report yet: run snakemake --cores 2 everything first" in output
+    assert not (copy.folder / "report.html").exists()

@@ -7,6 +7,7 @@ from pathlib import Path
 from solver import record
 from solver.case import Case
 from solver.record import Solution
+from solver.status import CaseStatus, StateStatus
 from workflow.plan.plan import Place, Plan
 from workflow.study.errors import StudyError
 
@@ -29,9 +30,9 @@ def path_of(key: str, folder: Path = FOLDER) -> Path:
     return folder / f"{key}.h5"
 
 
-def curves_of_study(plan: Plan, folder: Path = FOLDER) -> list[Curve]:
+def curves_of_study(plan: Plan, folder: Path = FOLDER, *, partial: bool = False) -> list[Curve]:
     """All curves of a study, with all their stops."""
-    solved = read(plan, plan.cases, folder)
+    solved = read(plan, plan.cases, folder, partial=partial)
     return [
         Curve(place, key, *solved[key], planned.case.path.stops)
         for key, planned in plan.cases.items()
@@ -39,25 +40,43 @@ def curves_of_study(plan: Plan, folder: Path = FOLDER) -> list[Curve]:
     ]
 
 
-def curves_of_scene(plan: Plan, scene: str, folder: Path = FOLDER) -> list[Curve]:
+def curves_of_scene(
+    plan: Plan, scene: str, folder: Path = FOLDER, *, partial: bool = False
+) -> list[Curve]:
     """The curves of a scene, with the stops that it asks for (its cases may have more)."""
     places = plan.scenes.get(scene, {})
-    solved = read(plan, places.values(), folder)
+    solved = read(plan, places.values(), folder, partial=partial)
     stops = plan.study.scenes[scene].swept if places else ()
     return [Curve(place, key, *solved[key], stops) for place, key in places.items()]
 
 
 def read(
-    plan: Plan, keys: Iterable[str], folder: Path = FOLDER
+    plan: Plan, keys: Iterable[str], folder: Path = FOLDER, *, partial: bool = False
 ) -> dict[str, tuple[Case, Solution]]:
-    """Case and solution by key.
+    """Case and solution by key; if ``partial``, one that has no record is ``not_solved``.
 
     Raises
     ------
     StudyError
         If a file is missing, damaged, or the record of another case.
     """
-    return {key: read_one(key, plan.cases[key].label, folder) for key in dict.fromkeys(keys)}
+    return {
+        key: not_solved(plan.cases[key].case)
+        if partial and not path_of(key, folder).exists()
+        else read_one(key, plan.cases[key].label, folder)
+        for key in dict.fromkeys(keys)
+    }
+
+
+def not_solved(case: Case) -> tuple[Case, Solution]:
+    """In place of a record: a case without any state."""
+    count = case.path.states
+    return case, Solution(
+        status=CaseStatus.NOT_SOLVED,
+        reason="there is no record of it yet",
+        states=record.unreached(count),
+        state_status=[StateStatus.NOT_REACHED] * count,
+    )
 
 
 def read_one(key: str, label: str, folder: Path = FOLDER) -> tuple[Case, Solution]:

@@ -13,7 +13,7 @@ from geometry.muscle import Muscle
 from solver.case import Case
 from solver.load_path import HELD, SWEPT, Control
 from solver.record import VARIABLES, Solution
-from solver.status import StateStatus
+from solver.status import CaseStatus, StateStatus
 from workflow.data import records
 from workflow.data.reference import ForceMap
 from workflow.plan import mesh_error
@@ -58,9 +58,16 @@ class SceneData:
     curves: list[records.Curve]
 
     @classmethod
-    def read(cls, plan: Plan, scene: str, folder: Path = records.FOLDER) -> "SceneData":
-        """Read the records of a scene."""
-        return cls(scene, plan, records.curves_of_scene(plan, scene, folder))
+    def read(
+        cls, plan: Plan, scene: str, folder: Path = records.FOLDER, *, partial: bool = False
+    ) -> "SceneData":
+        """Read the records of a scene; if ``partial``, those that there are."""
+        return cls(scene, plan, records.curves_of_scene(plan, scene, folder, partial=partial))
+
+    @property
+    def missing(self) -> int:
+        """How many curves have no record."""
+        return sum(c.solution.status is CaseStatus.NOT_SOLVED for c in self.curves)
 
     @property
     def scene(self) -> Scene:

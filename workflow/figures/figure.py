@@ -16,8 +16,10 @@ def drawn(scene: str) -> bool:
     return (FOLDER / f"{scene}.py").exists()
 
 
-def make(plan: Plan, scene: str, output: Path) -> None:
+def make(plan: Plan, scene: str, output: Path, *, partial: bool = False) -> None:
     """Draw a scene as PNG and SVG and write its table as CSV, each whole or not at all.
+
+    If ``partial``, of the records that there are, and the picture says how many are not.
 
     Raises
     ------
@@ -28,7 +30,7 @@ def make(plan: Plan, scene: str, output: Path) -> None:
         raise StudyError(f"{scene}: no such scene; there are {choices(scene, plan.study.scenes)}")
     if not drawn(scene):
         raise StudyError(f"{scene}: no such figure; it would be workflow/figures/{scene}.py")
-    data = SceneData.read(plan, scene)
+    data = SceneData.read(plan, scene, partial=partial)
     module = importlib.import_module(f"workflow.figures.{scene}")
     from workflow.figures import style
 
@@ -36,5 +38,8 @@ def make(plan: Plan, scene: str, output: Path) -> None:
     with aside(output.with_suffix(".csv")) as beside:
         table.to_csv(beside, index=False)
     figure = module.draw(table)
+    if data.missing:
+        unfinished = f"UNFINISHED: {data.missing} of {len(data.curves)} curves are not solved yet"
+        figure.text(0.5, 0.995, unfinished, ha="center", va="top", size=7, color="#d55e00")
     for suffix in (".svg", ".png"):
         style.save(figure, output.with_suffix(suffix))

@@ -30,6 +30,18 @@ rule gather:
         " {params.deviation:q} 2> {log:q}"
 
 
+# What has been solved so far, of an unfinished study: snakemake --cores 1 partial
+rule partial:
+    log:
+        "results/logs/partial.log",
+    params:
+        study=STUDY,
+    message:
+        "Gathering and drawing what is solved, into results/partial"
+    shell:
+        "python -m workflow partial --study {params.study:q} 2>&1 | tee {log:q} >&2"
+
+
 rule complete:
     input:
         figures=figures(),

@@ -10,7 +10,7 @@ CHAPTERS = {  # of what is no figure of the paper; a study that is not named is 
     "failures": HARD,
 }
 # A report is of the pages, so they are the target then.
-REPORTING = any(argument.startswith("--report") for argument in sys.argv)
+REPORTING = any(argument.partition("=")[0] == "--report" for argument in sys.argv)
 
 
 def page_sources():
@@ -53,4 +53,9 @@ PAGES = page_sources()
 def pages():
     """All pages; of a report those that are there."""
     files = [f"results/report/{page}.html" for page in PAGES]
-    return [file for file in files if Path(file).exists()] if REPORTING else files
+    if not REPORTING:
+        return files
+    found = [file for file in files if Path(file).exists()]
+    if not found:
+        sys.exit("There is no page to report yet: run snakemake --cores 2 everything first")
+    return found

@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 
 from solver.status import StateStatus
+from workflow.data.states import SceneData
 from workflow.figures import style
 
 FIGURES = [f"fig{number:02}" for number in range(3, 14)]
@@ -73,3 +74,17 @@ def test_csv_gives_the_table_back(name, scene_data, tmp_path):
     back = pd.read_csv(tmp_path / "table.csv", keep_default_na=True)
     assert list(back.columns) == list(table.columns)
     assert len(back) == len(table)
+
+
+@pytest.mark.parametrize("first", [0, 1])
+@pytest.mark.parametrize("name", WITH_STATES)
+def test_every_figure_of_an_unfinished_study(name, first, scene_data, study_plan, tmp_path):
+    """Every second case has no record yet; and without any."""
+    scene_data(name)
+    for files in (sorted(tmp_path.glob("*.h5"))[first::2], list(tmp_path.glob("*.h5"))):
+        for path in files:
+            path.unlink(missing_ok=True)
+        data = SceneData.read(study_plan, name, tmp_path, partial=True)
+        assert data.missing > 0 or len(data.curves) == 1
+        style.save(module(name).draw(module(name).table(data)), tmp_path / "a.png")
+    assert data.missing == len(data.curves)

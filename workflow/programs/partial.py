@@ -1,0 +1,41 @@
+"""Gather and draw what an unfinished study has solved so far, into results/partial."""
+
+import argparse
+import shutil
+from pathlib import Path
+
+from geometry.files import SEALS
+from solver.status import CaseStatus
+from workflow.data import dataset, records
+from workflow.figures import figure
+from workflow.programs import add_study, plan_of
+from workflow.run import failures
+
+FOLDER = Path("results/partial")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What it is told."""
+    add_study(parser)
+
+
+def run(given: argparse.Namespace) -> int:
+    """Write them; cases without a record are not_solved. Status 1 if a figure cannot be drawn."""
+    plan = plan_of(given)
+    curves = records.curves_of_study(plan, partial=True)
+    solutions = {curve.key: curve.solution for curve in curves}
+    missing = sum(found.status is CaseStatus.NOT_SOLVED for found in solutions.values())
+    dataset.write(dataset.build(curves, plan.study.muscles, effects=True), FOLDER / "dataset.nc")
+    failures.write(plan, solutions, FOLDER / "tables/failures.csv")
+    print(f"{len(solutions) - missing} of {len(solutions)} cases are solved", flush=True)
+    drawn, status = 0, 0
+    for scene in filter(figure.drawn, plan.study.scenes):
+        try:
+            figure.make(plan, scene, FOLDER / f"figures/{scene}.png", partial=True)
+            drawn += 1
+        except Exception as error:  # a figure may need what is not there yet; the others do not
+            print(f"{scene} cannot be drawn yet: {type(error).__name__}: {error}")
+            status = 1
+    shutil.rmtree(SEALS / FOLDER.name, ignore_errors=True)  # written as often as wanted
+    print(f"{FOLDER}: dataset.nc, tables/failures.csv and {drawn} figures")
+    return status
