@@ -17,7 +17,7 @@ sys.path.insert(0, CHECKOUT)
 
 from solver.case import MODELS, digest
 from workflow.analyses import analysis
-from workflow.data import paraview
+from workflow.data import paper, paraview
 from workflow.figures.figure import drawn
 from workflow.plan.plan import plan
 from workflow.run import sources as closure

@@ -38,7 +38,9 @@ def page_sources():
 
 def has_claims():
     """Whether the study is that of the paper, which claims and studies are about."""
-    return "dmsp20" in PLAN.study.muscles and "dmsp20_silicone" in PLAN.study.muscles
+    muscles = PLAN.study.muscles
+    papers = "dmsp20" in muscles and paper.is_normal(muscles["dmsp20"])
+    return papers and "dmsp20_silicone" in muscles
 
 
 def caption_of(page):

@@ -21,7 +21,7 @@ from workflow.analyses.claims.claim import GEOMETRIC, MUSCLE
 from workflow.analyses.claims.scorecard import SWEPT_MODEL, scorecard
 from workflow.analyses.claims.stress import SUMMARY, summary
 from workflow.analyses.threads import cases as threads
-from workflow.data import dataset
+from workflow.data import dataset, paper
 from workflow.data.records import Curve
 from workflow.plan.plan import Place, plan
 from workflow.study.errors import StudyError
@@ -55,6 +55,11 @@ def cases(study: Study) -> list[PlacedCase]:
     thread = study.muscles[MUSCLE].thread if MUSCLE in study.muscles else None
     if thread is None:
         raise StudyError(f"muscles.{MUSCLE}: the claims are of this muscle, with threads")
+    if not paper.is_normal(study.muscles[MUSCLE]):
+        raise StudyError(
+            f"muscles.{MUSCLE}: the claims are of the paper's muscle; this one has another size, "
+            "braid or rubber\n  allowed: any thread_stiffness; else give your muscle another name"
+        )
     own = thread.stiffness
     curves = [
         case

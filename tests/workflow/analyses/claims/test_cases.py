@@ -1,13 +1,16 @@
 """The cases of the scorecard, and the summary of a stress."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from solver.material import MooneyRivlin, Thread
 from workflow.analyses.claims import cases
 from workflow.analyses.claims.stress import summary
 from workflow.plan.plan import plan
+from workflow.study.errors import StudyError
 from workflow.study.study import load
 
 STUDY = load(Path(__file__).parents[4] / "config/config.yaml")
@@ -28,6 +31,20 @@ def test_the_study_has_its_own_cases_and_the_fast_ones_with_other_threads():
             assert case.case.thread.stiffness == case.stiffness
     per_stiffness = {sum(c.stiffness == ea for c in others) for ea in (50, 150, 594, 650)}
     assert len(per_stiffness) == 1
+
+
+def test_claims_are_of_the_papers_muscle_alone():
+    """Whatever a study calls it; its threads may have any stiffness."""
+    papers = STUDY.muscles["dmsp20"]
+
+    def named_so(**changes):
+        return replace(STUDY, muscles=STUDY.muscles | {"dmsp20": replace(papers, **changes)})
+
+    with pytest.raises(StudyError, match="another size, braid or rubber"):
+        cases.cases(named_so(muscle=replace(papers.muscle, length=200)))
+    with pytest.raises(StudyError, match="another size, braid or rubber"):
+        cases.cases(named_so(rubber=MooneyRivlin(c10=0.3, c01=0.1)))
+    assert cases.cases(named_so(thread=Thread(stiffness=400)))
 
 
 def test_single_threads_are_asked_for_silicone_of_all_walls():
