@@ -13,7 +13,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """Delete them, and the empty file of a mesh that failed."""
+    """Delete them, and the file that says why there is no mesh."""
     for key, case in cases_of(given).items():
         status = records.status(key, case.label)
         if status not in ("converged", "limit_point", "not solved"):
