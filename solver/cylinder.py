@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar, root
 
+from solver import continuity
 from solver.case import Case
 from solver.cylinder_mechanics import Cylinder, State
 from solver.effects import Rubber
@@ -37,13 +38,29 @@ REACH = 6.0  # r / R_i at which a tube counts as inflating without bound
 def solve(case: Case) -> Solution:
     """The curve of a case."""
     cylinder = Cylinder(case)
-    states = unreached(case.path.states)
-    count = len(case.path.stops)
-    for way in case.path.ways(rubber=case.effects.rubber is not Rubber.NONE):
+    states, reason, searched = _curve(cylinder)
+    cuts = continuity.snaps(case, (states, {}), lambda finer: (_curve(Cylinder(finer))[0], {}))
+    return judged(
+        case,
+        states,
+        reason=reason,
+        searched=searched,
+        lost=continuity.behind(case, cuts),
+        unknowns=cylinder.unknowns,
+    )
+
+
+def _curve(
+    cylinder: Cylinder,
+) -> tuple[dict[str, Array], str, tuple[float, float] | None]:
+    """States, why the last way ended early, and where zero force was looked for."""
+    path = cylinder.case.path
+    states = unreached(path.states)
+    for way in path.ways(rubber=cylinder.case.effects.rubber is not Rubber.NONE):
         reason, searched = _follow(cylinder, way, states)
-        if np.isfinite(states["force"][:count]).all():
+        if np.isfinite(states["force"][: len(path.stops)]).all():
             break
-    return judged(case, states, reason=reason, searched=searched, unknowns=cylinder.unknowns)
+    return states, reason, searched
 
 
 def _control(cylinder: Cylinder, kind: Control, state: State) -> float:
@@ -75,7 +92,7 @@ def _follow(
     Gives where the way ended if that was before its end, and where zero force was looked for.
     """
     case, at, reason = cylinder.case, cylinder.start, ""
-    curve = _Curve(cylinder) if case.path.zero_force else None
+    curve = _Branch(cylinder) if case.path.zero_force else None
     for point in way:
         kinds = point.first, point.second
         targets = np.array([point.first_target, point.second_target])
@@ -97,7 +114,7 @@ def _follow(
     return reason, finder.range
 
 
-class _Curve:
+class _Branch:
     """The curve of a case as solver.zero_force.Finder asks for it."""
 
     def __init__(self, cylinder: Cylinder) -> None:

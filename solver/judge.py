@@ -1,17 +1,18 @@
 """What has been solved, judged: the status of every state and of the case, each with its reason."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver import zero_force
 from solver.case import Case
-from solver.load_path import PathKind
+from solver.load_path import SWEPT, PathKind
 from solver.record import Solution
 from solver.status import CaseStatus, StateStatus, case_status, state_status
 
 LIMITS = ("fold", "asymptote", "crumpling", "overhang")  # kinds of limit that a reason begins with
+LOST = "reached through a state that is turned inside out, or across a snap of the muscle"
 States = dict[str, NDArray[np.float64]]
 
 
@@ -22,16 +23,22 @@ def judged(
     ended: CaseStatus | None = None,
     reason: str = "",
     searched: tuple[float, float] | None = None,
+    lost: Collection[int] = (),
     unknowns: int = 0,
 ) -> Solution:
     """The solution of a case that has these states.
 
     ``ended`` is how the solver ended if not by itself, ``reason`` why its way ended early;
-    ``searched`` says between which ends a state of zero force was looked for. What became of that
-    state does not enter the status of the case.
+    ``searched`` says between which ends a state of zero force was looked for, ``lost`` which
+    states lie behind one that is invalid or a snap. What became of the state of zero force does not
+    enter the status of the case.
     """
     count = len(case.path.stops)
     each = state_status(case.path.kind, states)
+    valid = StateStatus.CONVERGED, StateStatus.UNSTABLE
+    lost = {k for k in lost if each[k] in valid}
+    for k in lost:
+        each[k] = StateStatus.INVALID_STATE
     aside = ""  # what ended the search for zero force when the stops were done
     if ended and case.path.zero_force and np.isfinite(states["force"][:count]).all():
         ended, aside = None, reason
@@ -40,11 +47,16 @@ def judged(
         reason = ""
     if status is CaseStatus.INVALID_STATE:
         bad = each[:count].count(StateStatus.INVALID_STATE)
-        reason = f"{bad} of {count} states are turned inside out somewhere"
+        what = "turned inside out somewhere" + (", or lie behind such a state" if lost else "")
+        reason = f"{bad} of {count} states are {what}"
     notes = _notes(case.path.kind, states, each, reason)
+    for k in lost:
+        notes[k] = LOST
     if case.path.zero_force:
         each[-1], note = zero_force.judge(case, states, each[-1], searched)
         notes[-1] = aside or note or notes[-1]
+        if each[-1] in valid and _among_invalid(case, states, each):
+            each[-1], notes[-1] = StateStatus.INVALID_STATE, LOST
     return Solution(
         status=status,
         reason=reason,
@@ -53,6 +65,14 @@ def judged(
         notes=notes,
         unknowns=unknowns,
     )
+
+
+def _among_invalid(case: Case, states: States, status: Sequence[StateStatus]) -> bool:
+    """Whether all stops next to the state of zero force are invalid."""
+    stops = case.path.stops
+    above = int(np.searchsorted(stops, states[SWEPT[case.path.kind].name.lower()][-1]))
+    near = [status[k] for k in (above - 1, above) if 0 <= k < len(stops)]
+    return all(s is StateStatus.INVALID_STATE for s in near)
 
 
 def _notes(kind: PathKind, states: States, status: Sequence[StateStatus], reason: str) -> list[str]:
@@ -65,7 +85,7 @@ def _notes(kind: PathKind, states: States, status: Sequence[StateStatus], reason
             smallest = {
                 "det F at a quadrature point": states["min_det_f"][k],
                 "det F at a corner": states["min_det_f_nodes"][k],
-                "what must stay positive": states["margin"][k],
+                "margin": states["margin"][k],
             }
             worst = min(smallest, key=lambda name: smallest[name])
             return f"turned inside out: the smallest {worst} is {smallest[worst]:.3g}"

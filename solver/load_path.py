@@ -5,7 +5,7 @@ its stops; between them nothing is skipped, because hyperelastic states do not d
 Newton's method does.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntEnum, StrEnum
 
 from geometry.refusal import is_number
@@ -143,6 +143,22 @@ class LoadPath:
             for stop, p in enumerate(self.stops)
         ]
         return [*self._contract(0.0), *up]
+
+    def way_back(self) -> list[Waypoint]:
+        """The stops of an isobaric path from the other side: pressurised when already shortened."""
+        last = self.stops[-1]
+        shortened = replace(self, kind=PathKind.ISOMETRIC, held=last, stops=(self.held,))
+        return [
+            *shortened._contract(0.0),
+            *(
+                Waypoint(Control.CONTRACTION, last, Control.PRESSURE, self.held * k / RAMP_STEPS)
+                for k in range(1, RAMP_STEPS + 1)
+            ),
+            *(
+                Waypoint(Control.PRESSURE, self.held, Control.CONTRACTION, contraction, stop)
+                for stop, contraction in reversed(list(enumerate(self.stops)))
+            ),
+        ]
 
     def way_from_above(self, pressure: float) -> list[Waypoint]:
         """On an isometric path: to the held contraction at a pressure above all stops."""

@@ -13,14 +13,15 @@ from numpy.typing import NDArray
 
 from geometry.cell import Box
 from geometry.seal import is_sealed, why_none
-from solver import files, freefem
+from solver import continuity, files, freefem
 from solver.case import Case
+from solver.continuity import Solved, States, check_state
 from solver.effects import End, Twist, Volume
 from solver.judge import judged
 from solver.load_path import SWEPT, LoadPath, PathKind, Waypoint
 from solver.record import VARIABLES, Solution, unreached
 from solver.smoothing import marked
-from solver.status import CaseStatus, StateStatus
+from solver.status import CaseStatus, StateStatus, state_status
 from solver.zero_force import Search, limit_pressure
 
 RUBBISH = (ValueError, TypeError, LookupError, ArithmeticError, csv.Error)  # unreadable output
@@ -57,32 +58,90 @@ def solve(
         return failure(case, CaseStatus.MESH_FAILED, reason), None
     _check_mesh(mesh)
     until = time.monotonic() + limits.wall_time
-    states = unreached(case.path.states)
-    fields: dict[int, dict[str, NDArray[np.float64]]] = {}
-    usage: freefem.Usage | None = None
-    for way in case.path.ways():
-        end = _follow(case, way, mesh, log, limits, until, states, fields)
-        if end.usage is not None:
-            usage = end.usage if usage is None else usage + end.usage
-        if end.status is not None or np.isfinite(states["force"][: len(case.path.stops)]).all():
-            break
-    for way in _from_above(case, states) if end.status is None else []:
-        above = _follow(case, way, mesh, log, limits, until, states, fields)
-        end = replace(end, searched=above.searched or end.searched)
-        if above.usage is not None:
-            usage = above.usage if usage is None else usage + above.usage
-        if np.isfinite(states["force"][-1]):
-            break
+    solver = _Solver(mesh, log, limits, until)
+    solved, end, lost = solver.curve(case)
+    if end.status is None:
+        cuts = continuity.snaps(case, solved, lambda finer: solver.curve(finer)[0])
+        lost |= continuity.behind(case, cuts)
+    states, fields = solved
     solution = judged(
         case,
         states,
         ended=end.status,
         reason=end.reason,
         searched=end.searched,
+        lost=lost,
         unknowns=end.unknowns,
     )
     solution = replace(solution, fields=fields, log=freefem.tail(log) if end.status else "")
-    return marked(case, _with_diameter(case, solution)), usage
+    return marked(case, _with_diameter(case, solution)), solver.usage
+
+
+class _Solver:
+    """Curves by FreeFEM on one mesh within one limit of time; ``usage`` is that of all runs."""
+
+    def __init__(self, mesh: Path, log: Path, limits: freefem.Limits, until: float) -> None:
+        self._given = mesh, log, limits, until
+        self.usage: freefem.Usage | None = None
+
+    def curve(self, case: Case) -> tuple[Solved, "_End", set[int]]:
+        """States and fields, how the last way ended, and stops reached through lost states only.
+
+        What lies behind an invalid state on its way is taken from another way, if that leads there.
+        """
+        states, fields = solved = unreached(case.path.states), dict[int, States]()
+        count, lost, searched = len(case.path.stops), set[int](), None
+        for way in case.path.ways():
+            end = self._add(case, way, solved, lost)
+            searched = end.searched or searched
+            if end.status is not None:
+                break
+            if np.isfinite(states["force"][:count]).all() and not lost:
+                break
+        if lost and case.path.kind is PathKind.ISOBARIC and end.status is None:
+            self._add(case, case.path.way_back(), solved, lost)
+        for way in _from_above(case, states) if end.status is None else []:
+            searched = self._add(case, way, solved, lost).searched or searched
+            if np.isfinite(states["force"][-1]):
+                break
+        return (states, fields), replace(end, searched=searched), lost
+
+    def _add(self, case: Case, way: list[Waypoint], solved: Solved, lost: set[int]) -> "_End":
+        """Follow a way, and add what it reaches for the first time or better to what is known."""
+        found, its_fields = unreached(case.path.states), dict[int, States]()
+        end = _follow(case, way, *self._given, found, its_fields)
+        if end.usage is not None:
+            self.usage = end.usage if self.usage is None else self.usage + end.usage
+        states, fields = solved
+        swept, zero = found[SWEPT[case.path.kind].name.lower()], len(case.path.stops)
+        behind = lost_on(case, way, found)
+        for k in np.flatnonzero(np.isfinite(found["force"])):
+            new = np.isnan(states["force"][k])
+            better = k in lost and k not in behind
+            lower = k == zero and swept[k] < states[SWEPT[case.path.kind].name.lower()][k]
+            if not (new or better or lower):
+                continue
+            for name, values in states.items():
+                values[k] = found[name][k]
+            if k in its_fields:
+                fields[int(k)] = its_fields[int(k)]
+            lost -= {int(k)}
+            lost |= behind & {int(k)}
+        return end
+
+
+def lost_on(case: Case, way: list[Waypoint], states: States) -> set[int]:
+    """Stops that a way reaches behind an invalid state, until it begins anew without load."""
+    status = state_status(case.path.kind, states)
+    lost, bad = set(), False
+    for point in way:
+        if point.stop is None:
+            bad = False
+        elif bad:
+            lost.add(point.stop)
+        else:
+            bad = status[point.stop] is StateStatus.INVALID_STATE
+    return lost
 
 
 def _from_above(case: Case, states: dict[str, NDArray[np.float64]]) -> list[list[Waypoint]]:
@@ -318,9 +377,7 @@ def _collect(
         zero = number == len(way)
         stop = len(case.path.stops) if zero else way[number].stop
         assert stop is not None
-        swept = SWEPT[case.path.kind].name.lower()
-        if zero and states[swept][stop] <= row[swept]:
-            continue  # of several the lowest
+        check_state(case, stop, row)
         table = files.read(work / f"fields_{number}.txt", largest_fields)
         if table is not None:
             fields[stop] = _fields(case.model, table)

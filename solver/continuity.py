@@ -1,0 +1,131 @@
+"""Whether the states of a curve are of one branch: they are at their controls, and hang together.
+
+Newton's method converges on whatever branch it comes to. So a step of the free quantity between
+neighbouring stops is compared with the trapezoid of its recorded derivative (dF/dl on an isobaric
+path, dF/dp on an isometric one, on an isotonic one the contraction by de/dp). Where they differ by
+more than a share of the largest value, the curve is solved once more with stops in between, and
+again: mostly it only bends there. A state that those finer steps reach with another value is taken
+from them. Where the difference stays, the muscle snaps; what lies behind is of another branch.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.case import Case
+from solver.load_path import HELD, SWEPT, Control, PathKind
+
+SHARE = 0.05  # of the curve's largest value: the difference that is looked at
+SAME = 1e-3  # of the curve's largest value: the difference of two states that are the same
+BETWEEN = 3  # stops in between
+ROUNDS = 3
+NEWTON_SLACK = 100.0  # times the tolerance: how far a state may be from its controls
+States = dict[str, NDArray[np.float64]]
+Solved = tuple[States, dict[int, States]]  # states, and fields by state
+ROW = {Control.CONTRACTION: "contraction", Control.PRESSURE: "pressure", Control.FORCE: "force"}
+
+
+def check_state(case: Case, stop: int, row: dict[str, float]) -> None:
+    """Raise ValueError if a row is no state of the curve at a stop (the last: of zero force)."""
+    path = case.path
+    asked = {HELD[path.kind]: path.held}
+    if stop < len(path.stops):
+        asked[SWEPT[path.kind]] = path.stops[stop]
+    modulus = case.rubber.c10 + case.rubber.c01
+    sizes = {
+        Control.CONTRACTION: 1.0,
+        Control.PRESSURE: modulus,
+        Control.FORCE: modulus * math.pi * case.muscle.inner_radius**2,
+    }
+    for control, value in asked.items():
+        found = row[ROW[control]]
+        if not abs(found - value) <= NEWTON_SLACK * case.numerics.newton.tolerance * sizes[control]:
+            raise ValueError(f"a state whose {ROW[control]} is {found:g} instead of {value:g}")
+    for name, number in row.items():
+        if not (math.isfinite(number) or name.startswith("smoothing")):
+            raise ValueError(f"a state whose {name} is {number}")
+
+
+def free_quantity(
+    case: Case, states: States
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """The swept control at the stops, the quantity that follows from it, and its derivative."""
+    path, count = case.path, len(case.path.stops)
+    by_contraction = -case.muscle.length * states["stiffness"][:count]
+    by_pressure = states["force_by_pressure"][:count]
+    x = np.array(path.stops)
+    if path.kind is PathKind.ISOBARIC:
+        return x, states["force"][:count], by_contraction
+    if path.kind is PathKind.ISOMETRIC:
+        return x, states["force"][:count], by_pressure
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return x, states["contraction"][:count], -by_pressure / by_contraction
+
+
+def gaps(case: Case, states: States) -> list[int]:
+    """Stops from which to the next one the curve does not follow its derivative."""
+    x, value, slope = free_quantity(case, states)
+    if not np.isfinite(value).any():
+        return []
+    trapezoid = np.diff(x) * (slope[1:] + slope[:-1]) / 2
+    off = np.abs(np.diff(value) - trapezoid) > SHARE * np.nanmax(np.abs(value))
+    return [int(k) for k in np.flatnonzero(off)]
+
+
+def snaps(case: Case, solved: Solved, again: Callable[[Case], Solved]) -> list[tuple[float, float]]:
+    """Where the curve snaps, as intervals of the swept control.
+
+    ``again`` solves a case with more stops. What its finer steps reach with another value is
+    replaced in ``solved``.
+    """
+    fine_case, fine = case, solved
+    for _ in range(ROUNDS):
+        stops, found = fine_case.path.stops, gaps(fine_case, fine[0])
+        if not found:
+            break
+        more = [x for k in found for x in np.linspace(stops[k], stops[k + 1], BETWEEN + 2)[1:-1]]
+        stops = tuple(sorted({*stops, *map(float, more)}))
+        fine_case = replace(case, path=replace(case.path, stops=stops, zero_force=False))
+        fine = again(fine_case)
+    if fine is solved:
+        return []
+    stops = fine_case.path.stops
+    places = [stops.index(stop) for stop in case.path.stops]
+    if _others(case, solved, fine, places).any():
+        whole = replace(case, path=replace(case.path, stops=stops))
+        _take_over(solved, again(whole), [*places, len(stops)][: case.path.states])
+    return [(stops[k], stops[k + 1]) for k in gaps(fine_case, fine[0])]
+
+
+def _others(case: Case, solved: Solved, fine: Solved, places: Sequence[int]) -> NDArray[np.bool_]:
+    """Stops that finer steps have reached with another value."""
+    name = "force" if case.path.kind is not PathKind.ISOTONIC else "contraction"
+    values = solved[0][name][: len(places)]
+    largest = np.nanmax(np.abs(values), initial=0.0)
+    return np.asarray(np.abs(fine[0][name][places] - values) > SAME * largest)
+
+
+def _take_over(solved: Solved, fine: Solved, places: Sequence[int]) -> None:
+    """Replace what finer steps have reached, fields too."""
+    for k, place in enumerate(places):
+        if np.isfinite(fine[0]["force"][place]):
+            for variable, values in solved[0].items():
+                values[k] = fine[0][variable][place]
+            if k in solved[1]:
+                solved[1][k] = fine[1][place]
+
+
+def behind(case: Case, cuts: Sequence[tuple[float, float]]) -> set[int]:
+    """Stops that lie behind one of some intervals, on the first way to them."""
+    stops = case.path.stops
+    order = [point.stop for point in case.path.ways()[0] if point.stop is not None]
+    found: set[int] = set()
+    for before, stop in pairwise(order):
+        near, far = sorted((stops[before], stops[stop]))
+        if found or any(near <= low and high <= far for low, high in cuts):
+            found.add(stop)
+    return found
