@@ -58,7 +58,7 @@ WORDS = {  # what is said of states that are not drawn: of one, of several
 STRETCHED = 1.05  # a thread stretch that few threads stand
 SAME = 1e-6  # of the largest value: curves that differ by less are one line
 BAND = "_band"
-CHARACTERS = 18  # of a note, per inch of figure
+CHARACTERS = 17  # of a note, per inch of figure
 NOTE_LINE = 0.12  # inch
 
 

@@ -77,7 +77,7 @@ def draw(table: pd.DataFrame) -> Figure:
         axes[1, 0].set_ylim(*SHOWN)
         text = "Deviations are shown where MuscleSIM's force is over a tenth of its largest."
         if not table[DEVIATION].dropna().between(*SHOWN).all():
-            text += f" They are cut off at {100 * SHOWN[0]:.0f} and {100 * SHOWN[1]:.0f} %."
+            text += f" They are cut off at −{-100 * SHOWN[0]:.0f} and {100 * SHOWN[1]:.0f} %."
     curves.source_legend(figure, axes)
     curves.note_gaps(figure, table, _told_apart(table), CONTRACTION, text, y=FORCE)
     return figure

@@ -41,7 +41,7 @@ def draw(table: pd.DataFrame) -> Figure:
         ax.axhline(0, color="black", linewidth=0.7)
         for pressure in here[PAPER].dropna().unique():
             style = {"color": SOFT, "linewidth": 1.0, "linestyle": ":"}
-            ax.axvline(pressure, label=f"threshold in the paper, {pressure:g} MPa", **style)
+            ax.axvline(pressure, label=f"the paper's {pressure:g}", **style)
         for _, row in _thresholds(here).iterrows():
             look = {"color": look_of(row["source"])["color"], "markersize": 5, "zorder": 3}
             ax.plot(row[PRESSURE], 0, "D", label="_threshold", **look)
@@ -51,7 +51,9 @@ def draw(table: pd.DataFrame) -> Figure:
     curves.source_legend(figure, axes)
     told_apart = [name for name in ("muscle", CONTRACTION) if table[name].nunique() > 1]
     text = _said(_thresholds(table), told_apart)
-    curves.note_gaps(figure, table, told_apart or [CONTRACTION], PRESSURE, text, y=FORCE)
+    if table[PAPER].notna().any():
+        text += f" Dotted: the threshold pressure in the paper, {paper.THRESHOLD:g} MPa."
+    curves.note_gaps(figure, table, told_apart or [CONTRACTION], PRESSURE, text.strip(), y=FORCE)
     return figure
 
 
