@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from geometry.files import put
+from geometry.files import atomic_write
 
 
 @contextmanager
@@ -26,19 +26,19 @@ def writing(
     """
     import gmsh  # 0.3 s: only where something is meshed
 
-    aside = path.with_name(f".{path.name}.{os.getpid()}{suffix}")
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        yield
-        aside.touch()  # gmsh would not say why it cannot
-        with _silent():
-            _write(aside)
-        finish(aside)
-        put(aside, path)
-    finally:
-        aside.unlink(missing_ok=True)
-        gmsh.finalize()
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{path.parent}: there is no such folder")
+    with atomic_write(path, suffix=suffix) as beside:
+        gmsh.initialize(readConfigFiles=False, interruptible=False)
+        try:
+            gmsh.option.setNumber("General.Terminal", 0)
+            yield
+            beside.touch()  # where it cannot be written to this says why, and gmsh does not
+            with _silent():
+                _write(beside)
+            finish(beside)
+        finally:
+            gmsh.finalize()
 
 
 def _write(path: Path) -> None:

@@ -7,7 +7,7 @@ no mesh, its file says why instead.
 import hashlib
 from pathlib import Path
 
-from geometry.files import aside
+from geometry.files import atomic_write
 
 NO_MESH = b"no mesh: "
 COMMENTS = {  # by the last word of the mesh itself
@@ -45,7 +45,7 @@ def is_sealed(path: Path) -> bool:
 
 def write_why_none(path: Path, reason: str) -> None:
     """Write why there is no mesh, whole or not at all."""
-    with aside(path) as beside:
+    with atomic_write(path) as beside:
         beside.write_bytes(NO_MESH + " ".join(reason.split()).encode()[:4000] + b"\n")
 
 

@@ -7,12 +7,12 @@ without a record, if it failed for a reason outside the case (a full disk, a sig
 
 import argparse
 import json
-import os
 import sys
 import time
 from dataclasses import asdict
 from pathlib import Path
 
+from geometry.files import atomic_write
 from geometry.refusal import Refusal
 from solver.case import Case
 from solver.freefem import Limits, Outside, Usage
@@ -67,12 +67,8 @@ def _write_cost(path: Path, start: float, solving: float, status: str, usage: Us
         values = asdict(usage)
         values |= values.pop("parts")
         cost |= {f"freefem_{name}": value for name, value in values.items()}
-    aside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        aside.write_text(json.dumps(cost, sort_keys=True) + "\n")
-        os.replace(aside, path)
-    finally:
-        aside.unlink(missing_ok=True)
+    with atomic_write(path, sealed=False) as beside:
+        beside.write_text(json.dumps(cost, sort_keys=True) + "\n")
 
 
 if __name__ == "__main__":

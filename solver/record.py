@@ -20,8 +20,8 @@ Layout, version 3
              stress of the rubber rr, tt, zz, rt, tz, rz [MPa], threads (.., 4) = thread stretch
              of both layers [1] and their densities [mm/mm3].
 
-A record is complete or absent: it is written aside and renamed. It holds no time and no date, so
-that the same case solved again gives the same bytes.
+A record is complete or absent (geometry/files.py). It holds no time and no date, so that the same
+case solved again gives the same bytes.
 """
 
 import hashlib
@@ -35,7 +35,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from solver.case import Case, digest
 from solver.declared import Declared
 from solver.status import CaseStatus, Flag, StateStatus
@@ -146,7 +146,7 @@ def write(path: Path, case: Case, solution: Solution) -> None:
     content = io.BytesIO()  # HDF5 crashes where it cannot write to the disk
     with h5py.File(content, "w", userblock_size=BLOCK) as file:
         _write(file, case, solution)
-    with aside(path) as beside:
+    with atomic_write(path) as beside:
         beside.write_bytes(sealed(content.getvalue()))
 
 

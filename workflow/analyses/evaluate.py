@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from workflow.analyses import analysis
 from workflow.data import records
 from workflow.figures import style
@@ -21,10 +21,10 @@ def evaluate(name: str, study_file: str, table: Path, figures: Path) -> None:
         for asked in analysis.cases(name, study_file)
     ]
     rows = analysis.module(name).table(solved)
-    with aside(table) as beside:
+    with atomic_write(table) as beside:
         rows.to_csv(beside, index=False)
     if name in analysis.NOTED:
-        with aside(table.with_name(f"{name}_notes.csv")) as beside:
+        with atomic_write(table.with_name(f"{name}_notes.csv")) as beside:
             analysis.module(name).notes(rows).to_csv(beside, index=False, float_format="%.4g")
     for figure, drawing in analysis.module(name).draw(solved, rows).items():
         for suffix in (".svg", ".png"):

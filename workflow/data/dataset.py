@@ -31,7 +31,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from solver.case import MODELS
 from solver.record import VARIABLES, Solution
 from workflow.data import reference
@@ -108,7 +108,7 @@ def write(tree: xr.DataTree, path: Path) -> None:
         for group in tree.subtree
     }
     content = tree.to_netcdf(None, engine="h5netcdf", encoding=checked)
-    with aside(path) as beside:
+    with atomic_write(path) as beside:
         beside.write_bytes(content)  # HDF5 itself crashes where the disk is full
 
 

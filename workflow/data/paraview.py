@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from solver import record
 from workflow.data.principal_stress import principal_of_four, principal_of_six
 from workflow.study.errors import StudyError
@@ -58,7 +58,7 @@ def write(path: Path, state: int, output: Path) -> None:
     except record.NoRecord as error:
         raise StudyError(str(error)) from None
     fields = solution.fields.get(state)
-    with aside(output) as beside:
+    with atomic_write(output) as beside:
         if fields is None:
             beside.touch()
             return

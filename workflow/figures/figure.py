@@ -3,7 +3,7 @@
 import importlib
 from pathlib import Path
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from workflow.data.states import SceneData
 from workflow.plan.plan import Plan
 from workflow.study.errors import StudyError, choices
@@ -35,7 +35,7 @@ def make(plan: Plan, scene: str, output: Path, *, partial: bool = False) -> None
     from workflow.figures import style
 
     table = module.table(data)
-    with aside(output.with_suffix(".csv")) as beside:
+    with atomic_write(output.with_suffix(".csv")) as beside:
         table.to_csv(beside, index=False)
     figure = module.draw(table)
     if data.missing:

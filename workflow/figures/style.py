@@ -16,7 +16,7 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.ticker import MultipleLocator, PercentFormatter
 from matplotlib.transforms import ScaledTranslation
 
-from geometry.files import aside
+from geometry.files import atomic_write
 
 FULL, COLUMN_WIDTH = 7.0, 4.6  # widths [inch]
 LEFT, RIGHT, TOP, BOTTOM = 0.7, 0.14, 0.28, 0.48  # margins around the axes [inch]
@@ -238,5 +238,5 @@ def save(figure: Figure, path: Path) -> None:
     metadata = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}
     if path.suffix not in metadata:
         raise ValueError(f"{path}: a figure is .png or .svg")
-    with aside(path) as beside:
+    with atomic_write(path) as beside:
         figure.savefig(beside, format=path.suffix[1:], metadata=metadata[path.suffix])

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from workflow.analyses import dataset_groups
 from workflow.data import dataset, deviation, records, reference
 from workflow.programs import DATASET, FAILURES, add_study, plan_of
@@ -30,6 +30,6 @@ def run(given: argparse.Namespace) -> int:
     if given.deviation:
         named = {name: muscle.reference for name, muscle in plan.study.muscles.items()}
         rows = deviation.table(tree, reference.of_muscles(named))
-        with aside(given.deviation) as beside:
+        with atomic_write(given.deviation) as beside:
             rows.to_csv(beside, index=False, float_format="%.6g")
     return 0

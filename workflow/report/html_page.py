@@ -12,7 +12,7 @@ from typing import Any
 
 import pandas as pd
 
-from geometry.files import aside
+from geometry.files import atomic_write
 
 STYLE = """
 body { font: 14px/1.4 system-ui, sans-serif; margin: 1em; color: #222; max-width: 75em }
@@ -48,7 +48,7 @@ def write(
         + "\n".join(parts)
         + "\n</body></html>\n"
     )
-    with aside(output) as beside:
+    with atomic_write(output) as beside:
         beside.write_text(document, encoding="utf-8")
 
 

@@ -4,7 +4,7 @@ import csv
 from collections.abc import Sequence
 from pathlib import Path
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from solver.record import Solution
 from solver.status import CaseStatus, StateStatus
 from workflow.plan.plan import Plan
@@ -15,7 +15,7 @@ ANSWERS = {CaseStatus.CONVERGED, CaseStatus.LIMIT_POINT}  # no equilibrium is an
 
 def write(plan: Plan, solved: dict[str, Solution], path: Path) -> None:
     """Write the table of all cases that are not wholly converged; often it has a header only."""
-    with aside(path) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
+    with atomic_write(path) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
         table = csv.DictWriter(stream, COLUMNS)
         table.writeheader()
         for key, solution in solved.items():

@@ -1,11 +1,11 @@
 """Results that are not as they were written are named, and only what may be wrong is read."""
 
 import os
+from contextlib import suppress
 
 import pytest
 
-from geometry import files
-from geometry.files import aside
+from geometry.files import atomic_write
 from workflow.run import damage
 from workflow.study.errors import StudyError
 
@@ -15,7 +15,7 @@ def results(tmp_path, monkeypatch):
     """Two results, written as all are."""
     monkeypatch.chdir(tmp_path)
     for name in ("figures/a.svg", "b 1.2.csv"):
-        with aside(tmp_path / "results" / name) as beside:
+        with atomic_write(tmp_path / "results" / name) as beside:
             beside.write_text(f"content of {name}")
     return tmp_path / "results"
 
@@ -59,16 +59,21 @@ def test_a_damaged_seal_is_damage(results, seal):
 
 def test_a_process_that_is_killed_leaves_no_file_that_seems_whole(results, monkeypatch):
     """Between the seal and the file."""
-    monkeypatch.setattr(
-        files, "put", lambda beside, path: files._seal(beside, files.SEALS / path.name)
-    )
-    with aside(results / "b 1.2.csv") as beside:
+    replace = os.replace
+
+    def killed(beside, path):
+        if "seals" not in str(path):
+            raise KeyboardInterrupt
+        replace(beside, path)
+
+    monkeypatch.setattr(os, "replace", killed)
+    with suppress(KeyboardInterrupt), atomic_write(results / "b 1.2.csv") as beside:
         beside.write_text("longer than the content before")
     assert list(damage.noticed()) == ["results/b 1.2.csv"]
 
 
 def test_files_elsewhere_have_no_seal(results, tmp_path):
-    with aside(tmp_path / "mine.csv") as beside:
+    with atomic_write(tmp_path / "mine.csv") as beside:
         beside.write_text("mine")
     assert damage.compared()[0] == 2
 

@@ -23,7 +23,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pandas as pd
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from solver.freefem import Limits, executable
 from solver.solve import solve
 from workflow.analyses import analysis
@@ -150,7 +150,7 @@ def _python(arguments: list[str], text: str = "") -> float:
 
 def write(costs: pd.DataFrame, path: Path) -> None:
     """Write a table with a note on the machine above it, whole or not at all."""
-    with aside(path) as beside, beside.open("w", encoding="utf-8") as stream:
+    with atomic_write(path) as beside, beside.open("w", encoding="utf-8") as stream:
         stream.writelines(f"# {line}\n" for line in machine())
         costs.to_csv(stream, index=False)
 

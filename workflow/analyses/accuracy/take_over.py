@@ -4,7 +4,7 @@ import csv
 import time
 from pathlib import Path
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from solver import record
 from workflow.plan.mesh_error import COLUMNS, FILE
 from workflow.study.errors import StudyError
@@ -25,7 +25,7 @@ def take_over(study_table: Path, path: Path = FILE) -> None:
     families: dict[tuple[str, ...], list[dict[str, str]]] = {}
     for row in rows:
         families.setdefault((*_written(row), f"{float(row['refinement']):g}"), []).append(row)
-    with aside(path) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
+    with atomic_write(path) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
         stream.write(f"# {time.strftime('%Y-%m-%d')}, code {record.code_digest()}\n")
         table = csv.writer(stream, lineterminator="\n")
         table.writerow(COLUMNS)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from workflow.analyses.calibration import calibrate, snippet
 from workflow.analyses.calibration import figures as drawing
 from workflow.figures import style
@@ -29,10 +29,10 @@ def run(study_file: Path, tables: Path, figures: Path, muscles: Path) -> None:
         "calibration_values": pd.concat([calibrate.values(e, study) for e in found.values()]),
     }
     for name, table in written.items():
-        with aside(tables / f"{name}.csv") as beside:
+        with atomic_write(tables / f"{name}.csv") as beside:
             table.to_csv(beside, index=False, float_format="%.6g")
     for name, each in found.items():
-        with aside(muscles / f"{name}.yaml") as beside:
+        with atomic_write(muscles / f"{name}.yaml") as beside:
             beside.write_text(snippet.text(each, study), encoding="utf-8")
     models = {name: each.entry.model for name, each in found.items()}
     drawn = drawing.draw({name: each.states for name, each in found.items()}, models)

@@ -6,7 +6,7 @@ from dataclasses import fields
 from datetime import date
 from pathlib import Path
 
-from geometry.files import aside
+from geometry.files import atomic_write
 from solver.record import code_digest
 from workflow.analyses import analysis
 from workflow.analyses.analysis import Solved
@@ -34,7 +34,7 @@ def measure(study: str, costs: Path = COSTS, file: Path = FILE) -> None:
             spent = seconds[row["regime"], row["path"], row[side]]
             row[f"seconds_{side}"] = float(f"{spent:.2g}")
     names = [f.name for f in fields(MeasuredEffect)]
-    with aside(file) as beside, beside.open("w", newline="") as stream:
+    with atomic_write(file) as beside, beside.open("w", newline="") as stream:
         stream.write(f"# study of effects of {date.today()}, code {code_digest()}\n")
         writer = csv.DictWriter(stream, names, extrasaction="ignore", lineterminator="\n")
         writer.writeheader()
