@@ -30,13 +30,14 @@ from solver.numerics import KINDS, NUMERICS_OF_MODEL, Numerics
 from solver.refusal import UnsolvableCase
 
 MODELS = tuple(NUMERICS_OF_MODEL)
+NETS = ("geometric", "geometric_layers")  # Eq. (1): a braid without a wall
 MESHED = {"membrane": "meridian", "solid": "section", "cell": "cell"}
 WITH_KAPPA = {"solid", "cell"}  # the others are incompressible
 INCOMPRESSIBLE = {"kappa": 1e300}
 ANY_RUBBER = {"c10": 1, "c01": 0} | INCOMPRESSIBLE
 ANY_THREAD = {"stiffness": 1}
 UNREAD: dict[str, dict[str, dict[str, float]]] = {  # by model, what it leaves out of the identity
-    "geometric": {"muscle": {"wall_thickness": 1e9, "length": 1.0}},
+    **{model: {"muscle": {"wall_thickness": 1e9, "length": 1.0}} for model in NETS},
     "cylinder": {"rubber": INCOMPRESSIBLE},
     "membrane": {"rubber": INCOMPRESSIBLE},
 }
@@ -72,7 +73,7 @@ class Case:
             raise UnsolvableCase("model", self.model, ", ".join(MODELS))
         if self.muscle.braid is not None and self.thread is None:
             raise UnsolvableCase("thread", None, "a thread, as the muscle has a braid")
-        if self.muscle.braid is None and self.model == "geometric":
+        if self.muscle.braid is None and self.model in NETS:
             raise UnsolvableCase("model", self.model, "another model: Eq. (1) needs a braid")
         check_carried(self.model, self.effects)
         if self.muscle.braid is None and self.effects.rubber is Rubber.NONE:
@@ -96,7 +97,7 @@ class Case:
         clamped = self.model == "solid" and self.effects.end is End.CLAMP
         if not clamped:
             del muscle["cap_length"]
-        if self.model == "geometric":
+        if self.model in NETS:
             del muscle["wall_thickness"], muscle["length"]
             return values
         braided = self.muscle.braid is not None
@@ -214,9 +215,9 @@ def _filled(values: object) -> dict[str, Any]:
         raise UnsolvableCase("model", model, ", ".join(MODELS))
     given: dict[str, Any] = {"effects": {}, "numerics": {}, "fields_at": ()} | dict(values)
     effects = given["effects"] if isinstance(given["effects"], Mapping) else {}
-    if model == "geometric" or effects.get("rubber") == Rubber.NONE:
+    if model in NETS or effects.get("rubber") == Rubber.NONE:
         given = {"rubber": ANY_RUBBER} | given
-    if model == "geometric" or effects.get("stretch") == Stretch.RIGID:
+    if model in NETS or effects.get("stretch") == Stretch.RIGID:
         given = {"thread": ANY_THREAD} | given
     if effects.get("volume") == Volume.INCOMPRESSIBLE and isinstance(given.get("rubber"), Mapping):
         given["rubber"] = {**INCOMPRESSIBLE, **given["rubber"]}

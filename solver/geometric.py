@@ -1,7 +1,12 @@
 """The fundamental geometrical model, Eq. (1) of the paper: an inextensible net on a cylinder.
 
-F = p pi D0^2 / (4 sin^2 a) (3 cos^2 a (1 - eps)^2 - 1), D0 the inner diameter and a the braid angle
-at the mean layer diameter. The net alone decides the radius, so contraction ends at 54.7 deg.
+F = p pi D0^2 / (4 sin^2 a) (3 cos^2 a (1 - eps)^2 - 1), a the braid angle at the mean layer
+diameter. The net alone decides the radius, so contraction ends at 54.7 deg. D0 is
+
+geometric         the inner diameter, as in the paper
+geometric_layers  the mean layer diameter. As the volume of the wall stays the same, the volume
+                  inside the net changes as that of the bore does: this is -p dV/dl of a wall that
+                  keeps its volume, at any thickness.
 """
 
 import math
@@ -33,33 +38,49 @@ def force(
 
 
 def contraction_under_load(
-    muscle: Muscle, pressure: NDArray[np.float64], load: float
+    muscle: Muscle, pressure: NDArray[np.float64], load: float, diameter: float | None = None
 ) -> NDArray[np.float64]:
     """Contraction at which Eq. (1) gives ``load`` [N]; NaN where there is no pressure."""
     assert muscle.braid is not None
     angle = muscle.braid.angle
-    area = math.pi * muscle.inner_diameter**2 / (4 * math.sin(angle) ** 2)
+    d0 = muscle.inner_diameter if diameter is None else diameter
+    area = math.pi * d0**2 / (4 * math.sin(angle) ** 2)
     with np.errstate(divide="ignore", invalid="ignore"):
         squared = (1 + load / (area * pressure)) / (3 * math.cos(angle) ** 2)
     return np.where(pressure > 0, 1 - np.sqrt(squared), np.nan)
 
 
-def diameter(muscle: Muscle, contraction: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Diameter of the net, D0 sin(a') / sin(a) with cos(a') = (1 - eps) cos(a) [mm]; NaN beyond."""
+def bore(
+    muscle: Muscle, contraction: NDArray[np.float64], diameter: float | None = None
+) -> NDArray[np.float64]:
+    """Inner diameter [mm], from that of the net, D0 sin(a') / sin(a); NaN beyond its contraction.
+
+    cos(a') = (1 - eps) cos(a); what lies between bore and net keeps its volume.
+    """
     assert muscle.braid is not None
-    angle = muscle.braid.angle
-    cosine = (1 - contraction) * math.cos(angle)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(muscle.inner_diameter * np.sqrt(1 - cosine**2) / math.sin(angle))
+    angle, d0 = muscle.braid.angle, muscle.inner_diameter if diameter is None else diameter
+    shortening = 1 - contraction
+    with np.errstate(invalid="ignore", divide="ignore"):
+        net = d0 * np.sqrt(1 - (shortening * math.cos(angle)) ** 2) / math.sin(angle)
+        if diameter is None:
+            return np.asarray(net)
+        return np.asarray(np.sqrt(net**2 - (d0**2 - muscle.inner_diameter**2) / shortening))
+
+
+def net_diameter(case: Case) -> float | None:
+    """D0 of the model of a case [mm]; None for the inner diameter."""
+    assert case.muscle.braid is not None
+    return case.muscle.braid.mean_diameter if case.model == "geometric_layers" else None
 
 
 def solve(case: Case) -> Solution:
     """Eq. (1) at every stop of a path."""
     contraction, pressure = _sweep[case.path.kind](case)
+    d0 = net_diameter(case)
     states = unreached(case.path.states)
     states["contraction"], states["pressure"] = contraction, pressure
-    states["force"] = force(case.muscle, pressure, contraction)
-    states["inner_diameter_inflated"] = diameter(case.muscle, contraction)
+    states["force"] = force(case.muscle, pressure, contraction, d0)
+    states["inner_diameter_inflated"] = bore(case.muscle, contraction, d0)
     # what this model has no opinion on cannot make a state invalid or unstable
     checks = states | {
         "min_det_f": np.ones_like(pressure),
@@ -92,7 +113,8 @@ def _isometric(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 def _isotonic(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     pressure = np.array(case.path.stops, dtype=float)
-    return contraction_under_load(case.muscle, pressure, case.path.held), pressure
+    d0 = net_diameter(case)
+    return contraction_under_load(case.muscle, pressure, case.path.held, d0), pressure
 
 
 _Sweep = Callable[[Case], tuple[NDArray[np.float64], NDArray[np.float64]]]

@@ -139,6 +139,7 @@ def _given(value: float | None, otherwise: float) -> float:
 
 NUMERICS_OF_MODEL: dict[str, tuple[str, ...]] = {
     "geometric": (),
+    "geometric_layers": (),
     "cylinder": (),
     "membrane": ("newton", "meridian"),
     "solid": ("newton", "section"),

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from geometry.cell import Box
 from geometry.seal import is_sealed, why_none
 from solver import continuity, files, freefem
-from solver.case import Case
+from solver.case import NETS, Case
 from solver.continuity import Solved, States, check_state
 from solver.effects import End, Twist, Volume
 from solver.judge import judged
@@ -394,7 +394,7 @@ def _collect(
 
 def _direct(model: str) -> Callable[[Case], Solution] | None:
     """The solver of a model that needs no FreeFEM; imported only if it is the one."""
-    if model == "geometric":
+    if model in NETS:
         from solver import geometric
 
         return geometric.solve

@@ -8,6 +8,7 @@ import pytest
 from geometry.muscle import Braid, Muscle
 from solver import geometric
 from solver.load_path import LoadPath
+from solver.material import Thread
 from solver.status import CaseStatus, StateStatus
 
 # tan a = pi 21.2 / 144 = 0.4625123, so a = 24.821 deg, cos^2 a = 0.8237792, sin^2 a = 0.1762208
@@ -97,3 +98,56 @@ def test_what_it_knows_nothing_of_is_not_a_number(solve_case, make_case):
     states = solve_case(make_case(model="geometric")).states
     for name in ("min_det_f", "volume", "energy", "stiffness", "outer_diameter", "iterations"):
         assert np.isnan(states[name]).all(), name
+
+
+# --- at the layers --------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def thick(silicone):
+    """Threads near the outside of a thick wall: its layers are 38 % wider than its bore."""
+    braid = Braid.from_angle(angle=18, threads=24, layer_diameters=(2.76, 2.78))
+    muscle = Muscle(inner_diameter=2, wall_thickness=0.4, length=150, cap_length=1.6, braid=braid)
+    return {"muscle": muscle, "rubber": silicone, "thread": Thread(stiffness=60)}
+
+
+def test_at_the_layers_it_bounds_what_the_bore_does_not(make_case, solve_case, thick):
+    path = LoadPath(kind="isobaric", held=0.5, stops=(0.0,))
+    force = {
+        model: solve_case(make_case(model=model, path=path, **thick)).states["force"][0]
+        for model in ("geometric", "cylinder", "solid", "geometric_layers")
+    }
+    assert force["geometric"] == pytest.approx(28.187, abs=1e-3)
+    assert force["geometric_layers"] == pytest.approx(28.187 * 1.385**2, abs=1e-2)
+    assert force["geometric"] < 0.6 * force["solid"]
+    assert 0.9 * force["geometric_layers"] < force["solid"] < force["geometric_layers"]
+    assert 0.9 * force["geometric_layers"] < force["cylinder"] < force["geometric_layers"]
+
+
+def test_at_the_layers_it_is_the_work_of_the_pressure(make_case, solve_case, thick):
+    """F = -p dV/dl of the bore, of a wall that keeps its volume: by central differences."""
+    contraction, pressure, step = 0.1, 0.5, 1e-4
+    path = LoadPath(
+        kind="isobaric", held=pressure, stops=(contraction - step, contraction, contraction + step)
+    )
+    states = solve_case(make_case(model="geometric_layers", path=path, **thick)).states
+    length = 150 * (1 - states["contraction"])
+    volume = math.pi / 4 * states["inner_diameter_inflated"] ** 2 * length
+    slope = (volume[2] - volume[0]) / (length[2] - length[0])
+    assert states["force"][1] == pytest.approx(-pressure * slope, rel=1e-6)
+
+
+@pytest.mark.parametrize("model", ["geometric", "geometric_layers"])
+def test_a_load_is_found_again(make_case, solve_case, thick, model):
+    path = LoadPath(kind="isotonic", held=10.0, stops=(0.3, 0.5))
+    loaded = solve_case(make_case(model=model, path=path, **thick)).states
+    for pressure, contraction in zip(path.stops, loaded["contraction"], strict=True):
+        back = LoadPath(kind="isobaric", held=pressure, stops=(float(contraction),))
+        found = solve_case(make_case(model=model, path=back, **thick)).states["force"][0]
+        assert found == pytest.approx(10.0, rel=1e-12)
+
+
+def test_the_curve_of_the_paper_is_the_same_case(make_case):
+    case = make_case(model="geometric")
+    assert case.key == "9f0d502a42d51c0d"
+    assert make_case(model="geometric_layers").key != case.key

@@ -62,8 +62,9 @@ def planned(folder, text=STUDY):
 
 
 def value(key, variable, state):
-    """A number that says where it is from: case, variable and state."""
-    return int(key[:8], 16) + list(VARIABLES).index(variable) / 64 + state / 4096
+    """A number that says where it is from: case, variable and state; stretches are below 1."""
+    number = int(key[:8], 16) + list(VARIABLES).index(variable) / 64 + state / 4096
+    return number / 2**33 if "stretch" in variable else number
 
 
 def write_records(found, folder, failed=()):

@@ -1,6 +1,6 @@
 """Records of planned cases, read by name: a missing, foreign or damaged file is never data."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,6 +8,7 @@ from solver import record
 from solver.case import Case
 from solver.record import Solution
 from solver.status import CaseStatus, StateStatus
+from workflow.data.strain import judged
 from workflow.plan.plan import Place, Plan
 from workflow.study.errors import StudyError
 
@@ -34,7 +35,7 @@ def curves_of_study(plan: Plan, folder: Path = FOLDER, *, partial: bool = False)
     """All curves of a study, with all their stops."""
     solved = read(plan, plan.cases, folder, partial=partial)
     return [
-        Curve(place, key, *solved[key], planned.case.path.stops)
+        _curve(plan, place, key, solved, planned.case.path.stops)
         for key, planned in plan.cases.items()
         for place in planned.places
     ]
@@ -47,7 +48,20 @@ def curves_of_scene(
     places = plan.scenes.get(scene, {})
     solved = read(plan, places.values(), folder, partial=partial)
     stops = plan.study.scenes[scene].swept if places else ()
-    return [Curve(place, key, *solved[key], stops) for place, key in places.items()]
+    return [_curve(plan, place, key, solved, stops) for place, key in places.items()]
+
+
+def _curve(
+    plan: Plan,
+    place: Place,
+    key: str,
+    solved: Mapping[str, tuple[Case, Solution]],
+    stops: tuple[float, ...],
+) -> Curve:
+    """A curve, judged by what the materials of its muscle bear."""
+    case, solution = solved[key]
+    limits = plan.study.muscles[place.muscle].limits
+    return Curve(place, key, case, judged(case, solution, limits), stops)
 
 
 def read(

@@ -55,6 +55,12 @@ matplotlib.rcParams.update(
 
 SOURCES: dict[str, dict[str, Any]] = {  # models and reference maps
     "geometric": {"label": "Eq. (1)", "color": "0.45", "linestyle": (0, (5, 2))},
+    "geometric_layers": {
+        "label": "Eq. (1) at the layers",
+        "color": "0.45",
+        "linewidth": 1.1,
+        "linestyle": (0, (1, 1.5)),
+    },
     "cylinder": {"label": "cylinder", "color": "#cc79a7", "linestyle": (0, (5, 1, 1, 1))},
     "cell": {
         "label": "FE cell of the braid",
@@ -79,6 +85,7 @@ SOURCES: dict[str, dict[str, Any]] = {  # models and reference maps
 }
 COMPARED: dict[str, dict[str, Any]] = {  # models where the colour says something else
     "geometric": {"linewidth": 1.2, "linestyle": (0, (4, 4)), "marker": ""},
+    "geometric_layers": {"linewidth": 1.2, "linestyle": (0, (1, 1.5)), "marker": ""},
     "cylinder": {"linewidth": 1.2, "linestyle": (0, (5, 1, 1, 1)), "marker": ""},
     "cell": {"linewidth": 1.2, "linestyle": (0, (3, 1, 1, 1, 1, 1)), "marker": ""},
     "solid": {"linewidth": 2.8, "alpha": 0.5, "marker": ""},

@@ -58,6 +58,6 @@ def _force(muscle: StudiedMuscle, pressure: float, contraction: float, taken: fl
     ideal = _eq_1(muscle, pressure, contraction)
     wall = muscle.muscle.wall_thickness * muscle.muscle.inner_diameter / WALL
     if muscle.rubber.shear_modulus < 0.2:
-        wall /= 1.5  # soft rubber was measured on a wall of 3 mm, not of 2
+        wall /= 1.5  # measured at 3 mm
     share = 0.4 + 0.6 * min(abs(contraction) / 0.15, 1.0)
     return max(ideal - share * taken * wall, LEAST * ideal)

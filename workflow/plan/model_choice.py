@@ -53,7 +53,7 @@ LADDER = {  # cheapest first
         Rung("solid, finer", "solid", "finer", None, "mesh of solid"),
     )
 }
-# No step of the ladder, whose models all smear the threads: the cell has no caps, and takes long.
+# Off the ladder, whose models all smear the threads: it has no caps, and is dear.
 OF_CELL = Rung("cell", "cell", "default", "membrane", "end_caps")
 DISCRETE = "discrete_threads"
 SMEARED = "isobaric", DISCRETE  # path and effect: measured at constant pressure only

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 from geometry import section
 from geometry.muscle import Muscle
-from solver.case import MESHED, Case, digest
+from solver.case import MESHED, NETS, Case, digest
 from solver.load_path import LoadPath
 from workflow.plan import model_choice
 from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
@@ -195,7 +195,7 @@ def _case(study: Study, name: str, scene: Scene, place: Place, variant: Variant)
     keys, checked = ("scenes", name), study.source.checked
     assert scene.path is not None
     # Eq. (1) has its zero of force at no pressure but 0, so no threshold
-    has_zero = place.model != "geometric" or place.group == "isobaric"
+    has_zero = place.model not in NETS or place.group == "isobaric"
     path = checked(
         keys,
         LoadPath,

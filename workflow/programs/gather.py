@@ -5,7 +5,7 @@ from pathlib import Path
 
 from geometry.files import atomic_write
 from workflow.analyses import dataset_groups
-from workflow.data import dataset, deviation, records, reference
+from workflow.data import dataset, deviation, records, reference, strain
 from workflow.programs import DATASET, FAILURES, add_study, plan_of
 from workflow.run import failures
 
@@ -26,7 +26,8 @@ def run(given: argparse.Namespace) -> int:
         others = dataset_groups.found(given.failures.parent)
         tree = dataset.build(curves, plan.study.muscles, effects=True, others=others)
         dataset.write(tree, given.dataset)
-    failures.write(plan, {curve.key: curve.solution for curve in curves}, given.failures)
+    solved = {curve.key: curve.solution for curve in curves}
+    failures.write(plan, solved, given.failures, strain.summary(curves))
     if given.deviation:
         named = {name: muscle.reference for name, muscle in plan.study.muscles.items()}
         rows = deviation.table(tree, reference.of_muscles(named))

@@ -12,14 +12,14 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from pydantic_core import PydanticCustomError
 
 from geometry.refusal import is_count
-from solver.case import MESHED, MODELS
+from solver.case import MESHED, MODELS, NETS
 from solver.effects import EFFECTS, READ_BY, Effects
 from solver.load_path import PathKind
 from solver.numerics import KINDS
 from workflow.study.errors import choices, shown
 from workflow.study.values import expand
 
-BUILT = tuple(model for model in MODELS if model != "geometric")
+BUILT = tuple(model for model in MODELS if model not in NETS)
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}")
 NAME_RULE = "letters, digits, _ . and -, at most 64, not beginning with . or -"
 QUANTITIES = {
@@ -126,6 +126,7 @@ class MaterialEntry(Entry):
     c10: float
     c01: float
     kappa: float = 1000.0
+    stretch_limit: float | None = None
 
 
 class MuscleEntry(Entry):
@@ -142,6 +143,8 @@ class MuscleEntry(Entry):
     angle: float | None = None
     angle_of: Name | None = None
     thread_stiffness: float | None = None
+    thread_diameter: float | None = None
+    thread_strength: float | None = None
     material: Name | None = None
     reference: _some_of(*FORCE_MAPS) | None = None
 

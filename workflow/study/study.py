@@ -5,8 +5,9 @@ here, and every muscle is built, so that what cannot be built is refused before 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,9 @@ from geometry.muscle import Braid, Muscle
 from solver.effects import Effects
 from solver.material import MooneyRivlin, Thread
 from solver.numerics import KINDS, Numerics
+from workflow.study import fit
 from workflow.study.errors import choices
+from workflow.study.limits import Limits
 from workflow.study.schema import (
     HELD_KEY,
     QUANTITIES,
@@ -32,10 +35,11 @@ from workflow.study.source import Keys, Source
 CAP_PER_WALL = 4  # length in the fitting by wall thickness, unless given (docs/decisions/0004)
 SHAPE_KEYS = ("inner_diameter", "wall_thickness", "length", "cap_length")
 EA = "thread_stiffness"
-BRAID_KEYS = ("layer_depths", "lead", "angle", "angle_of", EA)
+OF_THREAD = (EA, "thread_diameter", "thread_strength")
+BRAID_KEYS = ("layer_depths", "lead", "angle", "angle_of", *OF_THREAD)
 ANGLE_KEYS = ("lead", "angle", "angle_of")  # exactly one of them
 # What may change while a muscle stays the one that was measured: nobody has measured these.
-NOT_MEASURED = (EA, "thread_diameter", "thread_strength", "reference")
+NOT_MEASURED = (*OF_THREAD, "reference")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,6 +50,7 @@ class StudiedMuscle:
     material: str
     rubber: MooneyRivlin
     thread: Thread | None
+    limits: Limits = field(default_factory=Limits)  # of its materials
     reference: tuple[str, ...] = ()  # names of the force maps that are of this muscle
 
 
@@ -85,11 +90,20 @@ def load(path: Path | str) -> Study:
         raise source.refusal_of(errors) from None
     source.check_values()
     rubbers = {
-        name: source.checked(("materials", name), MooneyRivlin, dict(entry))
+        name: source.checked(
+            ("materials", name), MooneyRivlin, entry.model_dump(exclude={"stretch_limit"})
+        )
         for name, entry in file.materials.items()
     }
-    muscles = _Muscles(source, file.muscles, rubbers)
+    limits = {
+        name: source.checked(
+            ("materials", name), Limits, entry.model_dump(include={"stretch_limit"})
+        )
+        for name, entry in file.materials.items()
+    }
     variants = {"default": VariantEntry()} | file.variants
+    modulus = _variant(source, file, "default", variants["default"]).numerics.spread.modulus
+    muscles = _Muscles(source, file.muscles, rubbers, limits, modulus)
     study = Study(
         source=source,
         muscles={name: muscles.built(name) for name in file.muscles},
@@ -114,8 +128,11 @@ class _Muscles:
         source: Source,
         entries: Mapping[str, MuscleEntry],
         rubbers: Mapping[str, MooneyRivlin],
+        limits: Mapping[str, Limits],
+        modulus: float,
     ) -> None:
         self.source, self.entries, self.rubbers = source, entries, rubbers
+        self.limits, self.modulus = limits, modulus
         self._complete: dict[str, dict[str, Any]] = {}
         self._built: dict[str, StudiedMuscle] = {}
 
@@ -147,13 +164,23 @@ class _Muscles:
             shape = {"cap_length": cap_length} | {k: values[k] for k in SHAPE_KEYS if k in values}
             checked = self.source.checked
             tube = checked(keys, Muscle, shape | {"braid": None})
+            muscle = tube if bare else replace(tube, braid=self._braid(name, values, askers))
+            thread, room = None, ""
+            if muscle.braid is not None:
+                thread = checked(keys, Thread, {"stiffness": values[EA]}, {"stiffness": EA})
+                threads = muscle.braid, thread, values.get("thread_diameter")
+                checked(keys, partial(fit.check, *threads), {})
+                room = fit.note(*threads, self.modulus)
             self._built[name] = StudiedMuscle(
-                muscle=tube if bare else replace(tube, braid=self._braid(name, values, askers)),
+                muscle=muscle,
                 material=values["material"],
                 rubber=self.rubbers[values["material"]],
-                thread=None
-                if bare
-                else checked(keys, Thread, {"stiffness": values[EA]}, {"stiffness": EA}),
+                thread=thread,
+                limits=checked(
+                    keys,
+                    partial(replace, self.limits[values["material"]]),
+                    {"thread_strength": values.get("thread_strength"), "room": room},
+                ),
                 reference=values.get("reference", ()),
             )
         return self._built[name]

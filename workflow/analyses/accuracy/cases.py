@@ -204,8 +204,7 @@ def _pair(name: str, case: Case, mesh: MeridianMesh | SectionMesh) -> Iterator[S
     finer = replace(mesh, refinement=2 * mesh.refinement)
     for each in (mesh, finer):
         numerics = _with_mesh(case.numerics, PART[case.model], each)
-        # With its own mesh it is the case of the scene, whose record serves here as well.
-        fields = case.fields_at if numerics == case.numerics else ()
+        fields = case.fields_at if numerics == case.numerics else ()  # a record that there is
         setting = _Setting(
             "scenes", case.model, name, numerics, case.effects, refinement=each.refinement
         )

@@ -57,11 +57,7 @@ FAMILIES = (  # set, model, colour, marker, what it is
     ("mesh", "solid", "#0072b2", "D", "solid, held gradually"),
     ("butt", "solid", "#d55e00", "s", "solid, bonded sharply"),
 )
-# Forces and energies converge with twice the order of the elements.
-THEORY = {
-    "bare tube, smooth": " (theory: 4)",
-    "membrane": " (theory: 4)",
-}  # twice that of the elements
+THEORY = {"bare tube, smooth": " (theory: 4)", "membrane": " (theory: 4)"}  # twice the elements'
 
 
 def overview(table: pd.DataFrame, costs: pd.DataFrame) -> Figure:

@@ -22,7 +22,7 @@ COARSE: dict[str, dict[str, MeridianMesh | SectionMesh]] = {  # not of the defau
         "coarsest": SectionMesh(cap_step=4, growth=3, body_step=4),
     },
 }
-CELLS = {  # few, as each takes minutes; nearly all of the cell's error is that it has no caps
+CELLS = {  # few, as they are dear; their error is nearly all that they have no caps
     "coarser": CellMesh(thread_size=1.5, body_size=0.4),
     "1/1": CellMesh(),
     "finer": CellMesh(thread_size=0.65, body_size=0.25),

@@ -113,14 +113,12 @@ def cases(study: Study) -> list[StudyCase]:
 def _case(study: Study, regime: Regime, setup: Setup, path: LoadPath) -> Case:
     muscle = study.muscles[regime.muscle]
     numerics = replace(Numerics(), **MESHES[setup.mesh])
-    # A thread is stiffer by its material and not by its diameter, for which there is no more room.
-    if regime.stiffness and muscle.thread:
+    if regime.stiffness and muscle.thread:  # a stiffer material: the threads have as little room
         stiffer = numerics.spread.modulus * regime.stiffness / muscle.thread.stiffness
         numerics = replace(numerics, spread=replace(numerics.spread, modulus=stiffer))
-    if setup.model == "geometric" and path.zero_force:  # by Eq. (1) there is none
+    if setup.model == "geometric" and path.zero_force:
         path = LoadPath(kind=path.kind, held=path.held, stops=path.stops)  # Eq. (1) has none
-    # Further along the path a layer slackens, which takes the cell very many small steps.
-    if regime.stiffness and setup.model == "cell":
+    if regime.stiffness and setup.model == "cell":  # a layer slackens further on: slow
         path = replace(path, stops=path.stops[:3])
     return Case(
         muscle=muscle.muscle,

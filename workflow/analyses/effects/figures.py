@@ -13,7 +13,7 @@ REGIMES = {
     "stiff threads": {"color": "#cc79a7", "marker": "D"},
 }
 NAMES = {"all but pressure on the net": "all but the net (Eq. 1)"}
-SMALLEST = 1e-5  # end of the axis: what is smaller is drawn at it
+SMALLEST = 1e-5  # what is less is drawn there
 
 
 def overview(table: pd.DataFrame) -> Figure:

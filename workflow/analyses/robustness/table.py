@@ -12,7 +12,7 @@ from workflow.analyses.analysis import Solved
 
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 APART = 0.03  # share of the largest force from which a membrane is far from its solid
-MESH_APART = {"named": 1e-3, "hypercube": 5e-3}  # the same, of a mesh from the finest
+MESH_APART = {"named": 1e-3, "hypercube": 5e-3}  # the same of a mesh from a finer one
 NOTE_COLUMNS = [
     "set",
     "name",
