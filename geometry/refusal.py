@@ -31,7 +31,10 @@ class Refusal(ValueError):
 
 def is_number(value: object) -> bool:
     """Whether this is a finite real number (True and False are none)."""
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+    try:
+        return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+    except OverflowError:  # an integer that no float can hold
+        return False
 
 
 def is_count(value: object) -> bool:

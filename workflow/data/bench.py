@@ -1,16 +1,21 @@
 """The forces that a muscle is fitted to: one of the reference maps, or a CSV file of one's own."""
 
 import csv
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from workflow.data import reference
-from workflow.data.reference import ForceMap
+from workflow.data.reference import CONTRACTIONS, ForceMap
+from workflow.study import user_file
 from workflow.study.errors import StudyError, choices
 
 COLUMNS = ("pressure_MPa", "force_N")
 PLACES = ("contraction", "length_mm")  # one of them
+FURTHEST = 0.2  # contraction, as in workflow/deviation.py
+FEW = 5  # points of a curve
 
 
 def read(name: str, length: float) -> ForceMap:
@@ -32,19 +37,27 @@ def read(name: str, length: float) -> ForceMap:
     if not path.suffix and len(path.parts) == 1:
         raise StudyError(f"{name}: no such reference map; {choices(name, maps)}, or a .csv file")
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            rows = list(csv.DictReader(stream))
-    except (OSError, UnicodeDecodeError) as error:
+        rows = list(csv.DictReader(user_file.text_of(path).splitlines()))
+    except csv.Error as error:
         raise StudyError(f"{path}: cannot be read ({error})") from None
     points = [_point(path, number, row, length) for number, row in enumerate(rows, 2)]
     used = [point for point, row in zip(points, rows, strict=True) if _used(point, row)]
     if not used:
         raise StudyError(f"{path}: there is no force in it")
-    columns = [f"{p:g} MPa, {e:g}" for p, e, _ in used]
-    twice = next((c for c in columns if columns.count(c) > 1), None)
-    if twice:
+    columns = Counter(f"{p:g} MPa, {e:g}" for p, e, _ in used)
+    twice, count = columns.most_common(1)[0]
+    if count > 1:
         raise StudyError(f"{path}: there are two forces at {twice}")
     return ForceMap(path.stem, path.stem, np.array(used), np.empty((0, 3)))
+
+
+def stops(found: ForceMap, pressure: float) -> NDArray[np.float64]:
+    """Contractions to fit at a pressure, those of the map or, if these are few, some between."""
+    own = found.contractions(pressure)
+    if np.sum((own >= 0) & (own <= FURTHEST)) < FEW:
+        own = np.union1d(own, CONTRACTIONS)
+    own = own[(own >= 0) & (own <= FURTHEST)]
+    return own[found.inside(own, pressure)]
 
 
 def _point(path: Path, number: int, row: dict[str, str], length: float) -> tuple[float, ...]:

@@ -17,9 +17,14 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from solver.status import StateStatus
-from workflow.data.reference import ForceMap, is_small, largest_force, relative_deviation
+from workflow.data.reference import (
+    CONTRACTIONS,
+    ForceMap,
+    is_small,
+    largest_force,
+    relative_deviation,
+)
 
-CONTRACTIONS = (0.0, 0.05, 0.1, 0.15, 0.2)
 RULE = "pchip"  # the interpolation of the rule
 ALL = "all"  # in place of a pressure: the mean over all states of all pressures
 GOOD = StateStatus.CONVERGED.value

@@ -24,6 +24,7 @@ DATA = ("config/reference/*.csv",)
 NOMINAL_LENGTH = 300.0  # mm, of the muscle that was measured
 SMALL = 0.1  # share of a curve's largest force below which a relative deviation means nothing
 DENSE = np.linspace(0, 0.2, 201)  # contractions among which a map has its largest force
+CONTRACTIONS = (0.0, 0.05, 0.1, 0.15, 0.2)  # at which curves are compared with a map
 SAME = 1e-9  # two pressures [MPa] or contractions this close are one
 
 Points = NDArray[np.float64]  # (point, 3): pressure [MPa], contraction [1], force [N]
@@ -72,7 +73,14 @@ class ForceMap:
 
     def inside(self, contraction: ArrayLike, pressure: float) -> NDArray[np.bool_]:
         """Which states the map says something of."""
-        return np.isfinite(self.force(contraction, pressure))
+        contraction = np.asarray(contraction, dtype=float)
+        around = self._around(pressure)
+        if around is None:
+            return np.zeros(contraction.shape, dtype=bool)
+        ends = [self._curve_points(p)[0][[0, -1]] for p in around[:2]]
+        low, high = np.max(ends, axis=0)[0], np.min(ends, axis=0)[1]
+        found: NDArray[np.bool_] = (contraction >= low) & (contraction <= high)
+        return found
 
     def _around(self, pressure: float) -> tuple[float, float, float] | None:
         """The tabulated pressures below and above (one and the same on a tabulated one), share.

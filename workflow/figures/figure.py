@@ -7,13 +7,7 @@ from geometry.files import atomic_write
 from workflow.data.states import SceneData
 from workflow.plan.plan import Plan
 from workflow.study.errors import StudyError, choices
-
-FOLDER = Path(__file__).parent
-
-
-def drawn(scene: str) -> bool:
-    """Whether there is a figure of this name; a scene without one is in the dataset only."""
-    return (FOLDER / f"{scene}.py").exists()
+from workflow.study.figure_needs import drawn
 
 
 def make(plan: Plan, scene: str, output: Path, *, partial: bool = False) -> None:

@@ -8,14 +8,17 @@ solved once, however many figures show it.
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from geometry import section
+from geometry.grading import UnbuildableMesh
 from geometry.muscle import Muscle
 from solver.case import MESHED, NETS, Case, digest
 from solver.load_path import LoadPath
 from workflow.plan import model_choice
+from workflow.study.errors import Findings
 from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
-from workflow.study.study import Study, Variant
+from workflow.study.study import Study, Variant, load
 
 FIELDS = {"stress", "deformed_shape"}
 ZERO_FORCE = {"threshold_pressure", "free_contraction"}
@@ -122,21 +125,43 @@ class _Wish:
         return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)))
 
 
-def plan(study: Study) -> Plan:
-    """The cases of a study.
+def read(path: Path | str) -> Plan:
+    """The plan of a study file.
 
     Raises
     ------
     StudyError
-        If a scene asks for a case that cannot be solved.
+        With all that is wrong with the file, in its entries and in the cases that they make.
     """
+    findings = Findings()
+    made = plan(load(path, findings), findings)
+    findings.say()
+    return made
+
+
+def plan(study: Study, findings: Findings | None = None) -> Plan:
+    """The cases of a study; errors are noted in ``findings``, if that is given.
+
+    Raises
+    ------
+    StudyError
+        If scenes ask for cases that cannot be solved.
+    """
+    found = Findings() if findings is None else findings
     wishes: dict[str, _Wish] = {}
     places: dict[str, dict[Place, str]] = {}
     for name, scene in study.scenes.items():
-        for place, case in _curves(study, name, scene):
-            curve = _identity(case)
-            wishes.setdefault(curve, _Wish(case)).add(name, place, case)
-            places.setdefault(name, {})[place] = curve
+        if not study.muscles.keys() >= {*scene.muscles}:
+            continue  # one of them was refused
+        if not study.variants.keys() >= {*scene.variants}:
+            continue
+        with found.gathering():
+            for place, case in _curves(study, name, scene, found):
+                curve = _identity(case)
+                wishes.setdefault(curve, _Wish(case)).add(name, place, case)
+                places.setdefault(name, {})[place] = curve
+    if findings is None:
+        found.say()
     planned = {curve: wish.planned() for curve, wish in wishes.items()}
     ordered = sorted(planned.values(), key=lambda entry: entry.places)
     return Plan(
@@ -152,6 +177,7 @@ def plan(study: Study) -> Plan:
             for scene in study.scenes.values()
             if scene.path is None
             for name in scene.muscles
+            if name in study.muscles
         },
     )
 
@@ -161,8 +187,10 @@ def _whole(muscle: Muscle) -> str:
     return json.dumps({"kind": "whole", "muscle": muscle.as_dict()}, sort_keys=True)
 
 
-def _curves(study: Study, name: str, scene: Scene) -> Iterator[tuple[Place, Case]]:
-    """What one scene asks for."""
+def _curves(
+    study: Study, name: str, scene: Scene, findings: Findings
+) -> Iterator[tuple[Place, Case]]:
+    """What one scene asks for; curves that cannot be solved are noted."""
     if scene.path is None:
         return
     choice = model_choice.choose(study, scene)
@@ -172,7 +200,8 @@ def _curves(study: Study, name: str, scene: Scene) -> Iterator[tuple[Place, Case
             for label, variant in choice.variants.items():
                 for held in scene.held:
                     place = Place(scene.path, muscle, model, label, held)
-                    yield place, _case(study, name, scene, place, variant)
+                    with findings.gathering():
+                        yield place, _case(study, name, scene, place, variant)
 
 
 def _check_models(study: Study, name: str, scene: Scene, choice: model_choice.Choice) -> None:
@@ -222,10 +251,42 @@ def _case(study: Study, name: str, scene: Scene, place: Place, variant: Variant)
         },
         {"model": "models"},
     )
-    if place.model == "solid":
-        mesh = {"mesh": variant.numerics.section, "end": variant.effects.end}
-        checked(("muscles", place.muscle), section.stations, {"muscle": muscle.muscle, **mesh})
+    _check_mesh(study, place, variant)
     return case
+
+
+# What a study has written if it has not written the setting of the mesh that cannot be met
+MESH_BY = {
+    "cap_step": ("cap_length", "wall_thickness"),
+    "growth": ("inner_diameter",),
+    "body_step": ("length",),
+}
+
+
+def _check_mesh(study: Study, place: Place, variant: Variant) -> None:
+    """Refuse a muscle that cannot be meshed so; named is the key that was written."""
+    muscle = study.muscles[place.muscle].muscle
+    kind = MESHED.get(place.model, "")
+    try:
+        if kind == "section":
+            section.stations(muscle, variant.numerics.section, variant.effects.end)
+        elif kind == "meridian":
+            variant.numerics.meridian.half_length_stations(muscle)
+    except UnbuildableMesh as refusal:
+        source, field = study.source, refusal.field
+        names = [name for name in study.variants if place.variant.startswith(name)]
+        places = [("variants", name, "numerics", kind, field) for name in names]
+        written = [keys for keys in (*places, ("numerics", kind, field)) if source.has(keys)]
+        if written:
+            raise source.refuse(written[0], refusal.value, refusal.allowed) from None
+        for key in MESH_BY.get(field, (field,)):
+            keys = ("muscles", source.owner(place.muscle, key), key)
+            if source.has(keys):
+                break
+        allowed = refusal.allowed
+        if key != field:
+            allowed = f"{allowed}, at a {field} of {refusal.value:g}"
+        raise source.refuse(keys, getattr(muscle, key), allowed) from None
 
 
 def _identity(case: Case) -> str:

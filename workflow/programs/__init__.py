@@ -8,8 +8,7 @@ such a rule depends on (workflow/run/sources.py).
 import argparse
 from pathlib import Path
 
-from workflow.plan.plan import Plan, plan
-from workflow.study.study import load
+from workflow.plan.plan import Plan, read
 
 STUDY = Path("config/config.yaml")
 DATASET = Path("results/dataset.nc")
@@ -23,4 +22,4 @@ def add_study(parser: argparse.ArgumentParser) -> None:
 
 def plan_of(given: argparse.Namespace) -> Plan:
     """The plan of the study file that was given."""
-    return plan(load(given.study))
+    return read(given.study)

@@ -1,6 +1,7 @@
 """Say what every scene wants, what it gets and why, and which scenes share that."""
 
 import argparse
+import sys
 
 from workflow.plan import explain
 from workflow.programs import add_study, plan_of
@@ -13,6 +14,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Print it."""
-    for line in explain.lines(plan_of(given)):
+    plan = plan_of(given)
+    for line in plan.study.warnings:
+        print(f"warning: {line}", file=sys.stderr)
+    for line in explain.lines(plan):
         print(line)
     return 0

@@ -16,7 +16,7 @@ rule benchmark:
     # Nothing else runs beside it. Asked late, since --report names no cores.
     threads: lambda _: workflow.cores
     params:
-        study=STUDY,
+        study=lambda _: STUDY,  # as it is, braces and all
     message:
         "Measuring what accuracy costs"
     shell:

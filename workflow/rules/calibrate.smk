@@ -8,7 +8,7 @@
 
 rule calibrate:
     input:
-        files=measured_files(),
+        files=lambda _: measured_files(),
         sources=sources("workflow.programs.calibrate"),
     output:
         table="results/tables/calibration.csv",
@@ -19,7 +19,7 @@ rule calibrate:
     log:
         "results/logs/calibrate.log",
     params:
-        study=STUDY,
+        study=lambda _: STUDY,  # as it is, braces and all
         asked=asked_calibrations(),
     message:
         "Fitting muscles to measured forces"

@@ -18,11 +18,12 @@ sys.path.insert(0, CHECKOUT)
 from solver.case import MODELS, digest
 from workflow.analyses import analysis
 from workflow.data import paper, paraview
-from workflow.figures.figure import drawn
-from workflow.plan.plan import plan
+from workflow.plan.plan import read
 from workflow.run import sources as closure
 from workflow.study.errors import StudyError
-from workflow.study.study import load
+from workflow.study.figure_needs import drawn
+from workflow.study.schema import FORCE_MAPS
+from workflow.study.study import study_file
 
 # Programs are those of this checkout, from whatever folder they are run (and whatever that folder
 # has of the same name). They run with the Python of Snakemake itself, whether or not its environment
@@ -31,12 +32,13 @@ PROGRAMS = shlex.quote(str(Path(sys.executable).parent))
 SETTINGS = f"PATH={PROGRAMS}:$PATH PYTHONPATH={shlex.quote(CHECKOUT)} PYTHONSAFEPATH=1"
 shell.prefix(f"set -euo pipefail; export {SETTINGS} OPENBLAS_NUM_THREADS=1; ")
 
-STUDY = config.get("study", "config/config.yaml")
-
 try:
-    PLAN = plan(load(STUDY))
+    STUDY = study_file(config)
+    PLAN = read(STUDY)
 except StudyError as error:
     sys.exit(str(error))  # the message and no traceback
+for line in PLAN.study.warnings:
+    print(f"warning: {line}", file=sys.stderr)
 
 
 FIELD_FILES = paraview.files(PLAN)
@@ -156,7 +158,7 @@ def deviations():
 def measured_files():
     """Files of the user that calibrations are fitted to."""
     named = {entry.reference for entry in PLAN.study.calibration.values()}
-    return sorted(name for name in named if Path(name).suffix)
+    return sorted(named.difference(FORCE_MAPS))
 
 
 def asked_calibrations():

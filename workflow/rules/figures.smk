@@ -17,7 +17,7 @@ rule figure:
     log:
         "results/logs/figures/{figure}.log",
     params:
-        study=STUDY,
+        study=lambda _: STUDY,  # as it is, braces and all
         scene=lambda wildcards: PLAN.digest(wildcards.figure),
     message:
         "Drawing {wildcards.figure}"

@@ -19,7 +19,7 @@ rule gather:
         "results/logs/gather.log",
     priority: 1
     params:
-        study=STUDY,
+        study=lambda _: STUDY,  # as it is, braces and all
         plan=PLAN.digest(),
         deviation=["--deviation", *deviations()] if deviations() else [],
     message:

@@ -26,7 +26,7 @@ for study_name, study_figures in analysis.FIGURES.items():
         log:
             f"results/logs/studies/{study_name}.log",
         params:
-            study=STUDY,
+            study=lambda _: STUDY,  # as it is, braces and all
             name=study_name,
         message:
             f"Evaluating the study {study_name}"

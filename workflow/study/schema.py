@@ -5,8 +5,9 @@ solver/); here stands what a file may contain. config/README.md describes every 
 """
 
 import re
+from collections import Counter
 from dataclasses import fields
-from typing import Annotated, Any, get_origin
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model
 from pydantic_core import PydanticCustomError
@@ -17,11 +18,12 @@ from solver.effects import EFFECTS, READ_BY, Effects
 from solver.load_path import PathKind
 from solver.numerics import KINDS
 from workflow.study.errors import choices, shown
-from workflow.study.values import expand
+from workflow.study.values import POSSIBLE, expand, is_possible
 
 BUILT = tuple(model for model in MODELS if model not in NETS)
-NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}")
-NAME_RULE = "letters, digits, _ . and -, at most 64, not beginning with . or -"
+LONGEST_NAME = 64
+NAME = re.compile(rf"[A-Za-z0-9_][A-Za-z0-9_.-]{{0,{LONGEST_NAME - 1}}}")
+NAME_RULE = f"letters, digits, _ . and -, at most {LONGEST_NAME}, not beginning with . or -"
 QUANTITIES = {
     # models that can give it; those from stress on are solved for or written only when asked for
     "force": MODELS,
@@ -73,7 +75,7 @@ def _one_of(*allowed: str) -> Any:
 
 
 def _some_of(*allowed: str) -> Any:
-    """A list of names out of ``allowed``, each once; their order means nothing."""
+    """Names out of ``allowed``, each once; their order means nothing."""
 
     def check(value: object) -> tuple[str, ...]:
         names = _each_once(value)
@@ -86,9 +88,12 @@ def _some_of(*allowed: str) -> Any:
 
 
 def _each_once(value: object) -> list[str]:
+    """A list of names; one name is a list of one."""
+    if isinstance(value, str):
+        return [value]
     if not isinstance(value, list) or not value or not all(isinstance(v, str) for v in value):
         raise refusal("a list of at least one name")
-    twice = next((v for v in value if value.count(v) > 1), None)
+    twice = next((v for v, count in Counter(value).items() if count > 1), None)
     if twice is not None:
         raise refusal(f"every name once; {shown(twice)} is there twice")
     return value
@@ -103,7 +108,20 @@ def _tuple_of(kind: Any) -> Any:
     return Annotated[kind, BeforeValidator(lambda v: tuple(v) if isinstance(v, list) else v)]
 
 
+def _whole(value: object) -> object:
+    """30.0 is 30."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+def _bounded(value: object) -> object:
+    """No number beyond what quantities can be; of such, products overflow."""
+    if isinstance(value, int | float) and not isinstance(value, bool) and not is_possible(value):
+        raise refusal(POSSIBLE)
+    return value
+
+
 def _threads(value: object) -> object:
+    value = _whole(value)
     if value != "none" and not (is_count(value) and value <= MOST_THREADS):
         raise refusal(f"an integer >= 1, <= {MOST_THREADS} (per layer), or none for a bare tube")
     return value
@@ -112,6 +130,9 @@ def _threads(value: object) -> object:
 Name = Annotated[str, AfterValidator(_name)]
 Names = Annotated[tuple[Name, ...], BeforeValidator(_sorted_names)]
 Values = Annotated[tuple[float, ...], BeforeValidator(_values)]
+Number = Annotated[float, BeforeValidator(_bounded)]
+Whole = Annotated[int, BeforeValidator(_whole), BeforeValidator(_bounded)]
+Range = _tuple_of(tuple[Number, Number])
 
 
 class Entry(BaseModel):
@@ -123,28 +144,28 @@ class Entry(BaseModel):
 class MaterialEntry(Entry):
     """A rubber."""
 
-    c10: float
-    c01: float
-    kappa: float = 1000.0
-    stretch_limit: float | None = None
+    c10: Number
+    c01: Number
+    kappa: Number = 1000.0
+    stretch_limit: Number | None = None
 
 
 class MuscleEntry(Entry):
     """A muscle, or what of it differs from its ``base``."""
 
     base: Name | None = None
-    inner_diameter: float | None = None
-    wall_thickness: float | None = None
-    length: float | None = None
-    cap_length: float | None = None
-    layer_depths: _tuple_of(tuple[float, float]) | None = None
+    inner_diameter: Number | None = None
+    wall_thickness: Number | None = None
+    length: Number | None = None
+    cap_length: Number | None = None
+    layer_depths: Range | None = None
     threads: Annotated[Any, BeforeValidator(_threads)] = None
-    lead: float | None = None
-    angle: float | None = None
+    lead: Number | None = None
+    angle: Number | None = None
     angle_of: Name | None = None
-    thread_stiffness: float | None = None
-    thread_diameter: float | None = None
-    thread_strength: float | None = None
+    thread_stiffness: Number | None = None
+    thread_diameter: Number | None = None
+    thread_strength: Number | None = None
     material: Name | None = None
     reference: _some_of(*FORCE_MAPS) | None = None
 
@@ -156,11 +177,17 @@ EffectsEntry = create_model(
 )
 
 
+KIND_OF = {  # of a field of a dataclass
+    float: Number,
+    float | None: Number,
+    int: Whole,
+    tuple[int, int, int]: _tuple_of(tuple[Whole, Whole, Whole]),
+}
+
+
 def _overrides(name: str, kind: Any) -> type[Entry]:
     """A schema with the fields of a dataclass, all of which may be left out."""
-    types = {
-        f.name: _tuple_of(f.type) if get_origin(f.type) is tuple else f.type for f in fields(kind)
-    }
+    types = {f.name: KIND_OF[f.type] for f in fields(kind)}
     return create_model(
         f"{name}_entry", __base__=Entry, **{key: (kind | None, None) for key, kind in types.items()}
     )
@@ -183,8 +210,8 @@ class VariantEntry(Entry):
 class LimitsEntry(Entry):
     """What a case may use."""
 
-    wall_time: Annotated[int, Field(gt=0, le=10**7)] = 600  # s
-    memory: Annotated[int, Field(gt=0, le=10**7)] = 2000  # MB
+    wall_time: Annotated[Whole, Field(gt=0, le=10**7)] = 600  # s
+    memory: Annotated[Whole, Field(gt=0, le=10**7)] = 2000  # MB
 
 
 class Scene(Entry):
@@ -198,7 +225,7 @@ class Scene(Entry):
     models: _some_of(*MODELS) | None = None
     variants: Names = ("default",)
     effects: dict[_one_of(*EFFECTS), _one_of("on", "off")] = {}
-    tolerance: Annotated[float, Field(gt=0, lt=1)] | None = None  # share of the largest value
+    tolerance: Annotated[Number, Field(gt=0, lt=1)] | None = None  # share of the largest value
     quantities: _some_of(*QUANTITIES) = ()
 
     @property
@@ -210,9 +237,6 @@ class Scene(Entry):
     def swept(self) -> tuple[float, ...]:
         """Stops along each curve."""
         return getattr(self, SWEPT_KEY[self.path])
-
-
-Range = _tuple_of(tuple[float, float])
 
 
 class BoundsEntry(Entry):

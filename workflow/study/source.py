@@ -1,4 +1,4 @@
-"""The text of a study file: read without duplicate keys, and every refusal with its line."""
+"""The text of a study file: what stands in it, and every refusal with its line."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -7,16 +7,16 @@ from typing import Any, TypeVar, get_args
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
-from ruamel.yaml import YAML
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 from geometry.refusal import Refusal
-from workflow.study.errors import StudyError, choices, shown
-from workflow.study.schema import NAME_RULE, Entry, StudyFile
+from workflow.study import plain_yaml, units, user_file
+from workflow.study.errors import Findings, StudyError, choices, printable, shown
+from workflow.study.plain_yaml import Node, UnreadableText
+from workflow.study.schema import LONGEST_NAME, NAME_RULE, Entry, StudyFile
 
 T = TypeVar("T")
 Keys = tuple[str | int, ...]
-MOST = 3  # refusals shown at once
+NAMED = ("materials", "muscles", "variants", "scenes", "calibration")  # sections of entries by name
 
 
 @dataclass(frozen=True)
@@ -26,55 +26,102 @@ class Source:
     Attributes
     ----------
     plain : dicts, lists and scalars
-    marked : the same with line numbers
+    root : the same with line numbers
     """
 
     path: Path
     plain: Any
-    marked: Any
+    root: Node
 
     @classmethod
     def read(cls, path: Path) -> "Source":
         """Parse a file; a duplicate key is an error."""
+        text = user_file.text_of(path)
         try:
-            marked = YAML(typ="rt").load(path.read_text(encoding="utf-8"))
-            return cls(path, _plain(marked), marked)
-        except FileNotFoundError:
-            raise StudyError(f"{path}: there is no such file") from None
-        except (OSError, UnicodeDecodeError) as error:
-            raise StudyError(f"{path}: cannot be read ({error})") from None
-        except MarkedYAMLError as error:
-            line = f":{error.problem_mark.line + 1}" if error.problem_mark else ""
-            problem = str(error.problem).partition(" with value")[0]  # of a duplicate key
-            raise StudyError(f"{path}{line}: {problem}") from None
-        except (YAMLError, ValueError) as error:
-            raise StudyError(f"{path}: cannot be read ({str(error).splitlines()[0]})") from None
-        except RecursionError:
-            raise StudyError(f"{path}: is nested too deeply") from None
+            root = plain_yaml.read(text)
+        except UnreadableText as error:
+            findings = Findings()
+            for line, problem in error.problems:
+                where = printable(str(path)) + (f":{line}" if line else "")
+                findings.add(StudyError(f"{where}: {problem}", line or 0))
+            raise findings.error() from None
+        return cls(path, root.plain(), root)
 
-    def check_values(self) -> None:
-        """Refuse a key that is there but has no value: what was meant cannot be known."""
+    def validated(self, findings: Findings) -> StudyFile:
+        """The entries that fit the schema; of the others, and of what has no value, the errors."""
+        places: list[Keys] = []
+        unknown: list[Keys] = []  # keys without which an entry is sound
+        try:
+            file = StudyFile.model_validate(self.plain)
+        except ValidationError as errors:
+            for error in errors.errors(include_url=False):
+                findings.add(self._of_schema(error))
+                alone = error["type"] == "extra_forbidden" and len(error["loc"]) == 3
+                (unknown if alone else places).append(error["loc"])
+        if not isinstance(self.plain, dict):
+            findings.say()
         for keys in _without_value(self.plain):
-            raise self.refuse(keys, None, "a value; or leave the key out")
+            if keys not in places:
+                findings.add(self.refuse(keys, None, "a value; or leave the key out"))
+                places.append(keys)
+        if places or unknown:
+            file = StudyFile.model_validate(self._without(places, unknown))
+        return file
 
     def refuse(self, keys: Keys, value: object, allowed: str) -> StudyError:
         """The error for the value of a key (None: the key is missing)."""
         given = "is missing" if value is None else f"= {shown(value)} is refused"
-        return StudyError(f"{self.place(keys)} {given}\n  allowed: {allowed}")
+        text = f"{self.place(keys)} {given}\n  allowed: {allowed}"
+        guess = units.guess(next((k for k in reversed(keys) if isinstance(k, str)), ""), value)
+        if guess:
+            text += f"\n  perhaps: {guess}"
+        return StudyError(text, self.line(keys) or 0, keys)
 
     def place(self, keys: Keys) -> str:
         """``file:line: key.path``; the line is that of the last key that is there."""
-        node: Any = self.marked
-        line = None
-        for key in keys:
-            try:
-                marks = node.lc  # where ruamel.yaml has read it
-                line = (marks.key(key) if isinstance(node, Mapping) else marks.item(key))[0]
-                node = node[key]
-            except (AttributeError, KeyError, IndexError, TypeError):
-                break
-        where = f"{self.path}:{line + 1}" if line is not None else f"{self.path}"
+        line, name = self.line(keys), printable(str(self.path))
+        where = f"{name}:{line}" if line is not None else name
         return f"{where}: {'.'.join(_readable(key) for key in keys)}"
+
+    def line(self, keys: Keys) -> int | None:
+        """Of the last key that is there."""
+        node, line = self.root, None
+        for key in keys:
+            if isinstance(node.value, dict):
+                own = next((k for k in node.value if k == key or str(k) == key), None)
+                if own not in node.value:
+                    break
+                line, node = node.lines[own], node.value[own]
+            elif isinstance(node.value, list) and isinstance(key, int) and key < len(node.value):
+                node = node.value[key]
+                line = node.line
+            else:
+                break
+        return line
+
+    def has(self, keys: Keys) -> bool:
+        """Whether a key was written there."""
+        found = self.plain
+        for key in keys:
+            if not isinstance(found, dict) or key not in found:
+                return False
+            found = found[key]
+        return True
+
+    def owner(self, muscle: str, key: str) -> str:
+        """The muscle that wrote what a muscle has for a key; the root of its bases if none has."""
+        muscles = self.plain["muscles"]
+        for _ in muscles:  # no longer than that, should they go in a circle
+            base = muscles[muscle].get("base")
+            if key in muscles[muscle] or not isinstance(muscles.get(base), dict):
+                break
+            muscle = base
+        return muscle
+
+    def names(self, section: str) -> list[str]:
+        """Names of the entries of a section, right or wrong."""
+        found = self.plain.get(section)
+        return [name for name in found if isinstance(name, str)] if isinstance(found, dict) else []
 
     def checked(
         self,
@@ -93,42 +140,50 @@ class Source:
             name = (renamed or {}).get(refusal.field, refusal.field)
             raise self.refuse((*keys, name), refusal.value, refusal.allowed) from None
 
-    def refusal_of(self, errors: ValidationError) -> StudyError:
-        """The first few errors of the schema in one."""
-        found = errors.errors(include_url=False)
-        lines = [self._line(error) for error in found[:MOST]]
-        if len(found) > MOST:
-            lines.append(f"... and {len(found) - MOST} more")
-        return StudyError("\n".join(lines))
+    def _without(self, places: list[Keys], unknown: list[Keys]) -> dict[str, Any]:
+        """What stands in the file without the entries, or else sections, of these places."""
+        left = {
+            key: dict(value) if key in NAMED and isinstance(value, dict) else value
+            for key, value in self.plain.items()
+        }
+        for section, name, key in unknown:
+            if section in NAMED:
+                entry = left[section][name]
+                left[section][name] = {k: v for k, v in entry.items() if k != key}
+            else:
+                left.pop(section, None)
+        for place in places:
+            section = place[0]
+            if section not in NAMED or len(place) == 1 or not isinstance(left.get(section), dict):
+                left = {key: value for key, value in left.items() if str(key) != section}
+            else:
+                entries = left[section]
+                left[section] = {k: v for k, v in entries.items() if str(k) != str(place[1])}
+        needed = [key for key, f in StudyFile.model_fields.items() if f.is_required()]
+        return {key: {} for key in needed} | left
 
-    def _line(self, error: ErrorDetails) -> str:
+    def _of_schema(self, error: ErrorDetails) -> StudyError:
         keys = error["loc"]
+        line = self.line(keys) or 0
+        allowed = error["msg"].removeprefix("Input should be ")
         if keys and keys[-1] == "[key]":
-            return f"{self.place(keys[:-1])} is no name\n  allowed: {NAME_RULE}"
+            allowed = allowed if error["type"] == "refused" else NAME_RULE
+            return StudyError(
+                f"{self.place(keys[:-1])} is no name here\n  allowed: {allowed}", line
+            )
         if error["type"] in ("extra_forbidden", "invalid_key"):
             allowed = choices(keys[-1], _known_keys(keys[:-1]))
-            return f"{self.place(keys)} is no key here\n  allowed: {allowed}"
+            return StudyError(
+                f"{self.place(keys)} is no key here\n  allowed: {allowed}", line, keys
+            )
         if error["type"] == "missing":
-            return f"{self.place(keys)} is missing\n  allowed: this key must be given"
-        allowed = error["msg"].removeprefix("Input should be ")
+            return self.refuse(keys, None, "this key must be given")
         if error["type"] in ("model_type", "dict_type"):
             allowed = "a mapping, key: value"
-        return f"{self.place(keys)} = {shown(error['input'])} is refused\n  allowed: {allowed}"
-
-
-def _plain(node: Any) -> Any:
-    """Without ruamel's own classes; a tag would be lost, so there must be none."""
-    tag = getattr(getattr(node, "tag", None), "value", None)
-    if tag is not None:
-        raise ValueError(f"the tag {tag} has no meaning here")
-    if isinstance(node, Mapping):
-        return {_plain(key): _plain(value) for key, value in node.items()}
-    if isinstance(node, list):
-        return [_plain(value) for value in node]
-    for kind in (bool, int, float, str):
-        if isinstance(node, kind):
-            return kind(node)
-    return node
+        if error["input"] is None:
+            text = f"{self.place(keys)} = None is refused\n  allowed: {allowed}"
+            return StudyError(text, line, keys)
+        return self.refuse(keys, error["input"], allowed)
 
 
 def _without_value(node: Any, keys: Keys = ()) -> Iterator[Keys]:
@@ -138,7 +193,8 @@ def _without_value(node: Any, keys: Keys = ()) -> Iterator[Keys]:
 
 
 def _readable(key: str | int) -> str:
-    return key if isinstance(key, str) and key.isprintable() else shown(key)
+    plain = isinstance(key, str) and key.isprintable() and len(key) <= 2 * LONGEST_NAME
+    return str(key) if plain else shown(key)
 
 
 def _known_keys(keys: Keys) -> list[str]:

@@ -4,27 +4,24 @@ Nothing is read from a study file anywhere else. ``base`` and ``angle_of`` of mu
 here, and every muscle is built, so that what cannot be built is refused before anything runs.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
-from typing import Any
-
-from pydantic import ValidationError
+from typing import Any, TypeVar
 
 from geometry.muscle import Braid, Muscle
+from geometry.refusal import Refusal
 from solver.effects import Effects
 from solver.material import MooneyRivlin, Thread
-from solver.numerics import KINDS, Numerics
-from workflow.study import fit
-from workflow.study.errors import choices
+from solver.numerics import KINDS, Numerics, Spread
+from workflow.study import checks, fit, units
+from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices, shown
 from workflow.study.limits import Limits
 from workflow.study.schema import (
-    HELD_KEY,
-    QUANTITIES,
-    SWEPT_KEY,
     CalibrationEntry,
+    MaterialEntry,
     MuscleEntry,
     Scene,
     StudyFile,
@@ -32,6 +29,8 @@ from workflow.study.schema import (
 )
 from workflow.study.source import Keys, Source
 
+T = TypeVar("T")
+DEFAULT = "config/config.yaml"
 CAP_PER_WALL = 4  # length in the fitting by wall thickness, unless given (docs/decisions/0004)
 SHAPE_KEYS = ("inner_diameter", "wall_thickness", "length", "cap_length")
 EA = "thread_stiffness"
@@ -40,6 +39,9 @@ BRAID_KEYS = ("layer_depths", "lead", "angle", "angle_of", *OF_THREAD)
 ANGLE_KEYS = ("lead", "angle", "angle_of")  # exactly one of them
 # What may change while a muscle stays the one that was measured: nobody has measured these.
 NOT_MEASURED = (*OF_THREAD, "reference")
+# Values beside which another one can be judged alone
+ANY_SHAPE = {"inner_diameter": 1, "wall_thickness": 1, "length": 1, "cap_length": 0, "braid": None}
+ANY_RUBBER = {"c10": 1e-12, "c01": 0, "kappa": 1e12}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,230 +75,344 @@ class Study:
     calibration: dict[str, CalibrationEntry]
     wall_time: int  # s, of one case
     memory: int  # MB, of one case
+    warnings: tuple[str, ...] = ()  # what may be meant otherwise
 
 
-def load(path: Path | str) -> Study:
-    """Read a study file.
+def study_file(given: Mapping[str, object]) -> str:
+    """The study file of a run, from Snakemake's ``--config``.
 
     Raises
     ------
     StudyError
-        Naming file, line, key, value and what is allowed.
+        If another key is given, or what is no path.
     """
+    for key in given:
+        if key != "study":
+            raise StudyError(f"--config {key}: no such key\n  allowed: {choices(key, ['study'])}")
+    study = given.get("study", DEFAULT)
+    if not isinstance(study, str):
+        allowed = f"the path of a study file (of one that is called so: ./{study})"
+        raise StudyError(f"--config study = {shown(study)} is refused\n  allowed: {allowed}")
+    return f"./{study}" if study.startswith("-") else study  # else it would be an option
+
+
+def load(path: Path | str, findings: Findings | None = None) -> Study:
+    """Read a study file.
+
+    With ``findings`` errors are noted there, and the study has what can be used in spite of them.
+
+    Raises
+    ------
+    StudyError
+        With all errors, each naming file, line, key, value and what is allowed.
+    """
+    found = Findings() if findings is None else findings
     source = Source.read(Path(path))
-    try:
-        file = StudyFile.model_validate(source.plain)
-    except ValidationError as errors:
-        raise source.refusal_of(errors) from None
-    source.check_values()
-    rubbers = {
-        name: source.checked(
-            ("materials", name), MooneyRivlin, entry.model_dump(exclude={"stretch_limit"})
-        )
-        for name, entry in file.materials.items()
-    }
-    limits = {
-        name: source.checked(
-            ("materials", name), Limits, entry.model_dump(include={"stretch_limit"})
-        )
-        for name, entry in file.materials.items()
-    }
-    variants = {"default": VariantEntry()} | file.variants
-    modulus = _variant(source, file, "default", variants["default"]).numerics.spread.modulus
-    muscles = _Muscles(source, file.muscles, rubbers, limits, modulus)
+    file = source.validated(found)
+    rubbers: dict[str, MooneyRivlin] = {}
+    limits: dict[str, Limits] = {}
+    for name, material in file.materials.items():
+        with found.gathering():
+            rubbers[name] = _rubber(source, found, name, material)
+        with found.gathering():
+            values = material.model_dump(include={"stretch_limit"})
+            limits[name] = source.checked(("materials", name), Limits, values)
+    variants: dict[str, Variant] = {}
+    for name, variant in ({"default": VariantEntry()} | file.variants).items():
+        with found.gathering():
+            variants[name] = _variant(source, found, file, name, variant)
+    spread = variants["default"].numerics.spread if "default" in variants else Spread()
+    resolved = _Muscles(source, found, file.muscles, rubbers, limits, spread.modulus)
+    muscles: dict[str, StudiedMuscle] = {}
+    for name in file.muscles:
+        with found.gathering():
+            muscles[name] = resolved.built(name)
     study = Study(
         source=source,
-        muscles={name: muscles.built(name) for name in file.muscles},
-        variants={name: _variant(source, file, name, v) for name, v in variants.items()},
+        muscles=muscles,
+        variants=variants,
         scenes=file.scenes,
         calibration=file.calibration,
         wall_time=file.limits.wall_time,
         memory=file.limits.memory,
+        warnings=tuple(checks.unusual(source, file, muscles)),
     )
-    for name, scene in study.scenes.items():
-        _check_scene(source, study, ("scenes", name), scene)
-    for name, entry in study.calibration.items():
-        _check_calibration(source, study, ("calibration", name), entry)
+    study = replace(
+        study,
+        scenes={n: s for n, s in file.scenes.items() if found.no_more(checks.scene(study, n))},
+        calibration={
+            n: c for n, c in file.calibration.items() if found.no_more(checks.calibration(study, n))
+        },
+    )
+    if findings is None:
+        found.say()
     return study
 
 
+def _rubber(source: Source, found: Findings, name: str, entry: MaterialEntry) -> MooneyRivlin:
+    """The rubber of an entry; a bulk modulus that was left out is not to blame."""
+    keys = ("materials", name)
+    values = entry.model_dump(exclude={"stretch_limit"})
+    try:
+        return MooneyRivlin(**values)
+    except Refusal as refusal:
+        blamed = refusal.field
+        stiff = [key for key in ("c10", "c01") if units.guess(key, values[key])]
+        if blamed == "kappa" and (stiff or not source.has((*keys, "kappa"))):
+            blamed = stiff[0] if stiff else max(("c10", "c01"), key=values.__getitem__)
+            kappa = values["kappa"]
+            allowed = f"c10 + c01 up to {kappa / 100:g} MPa at a kappa of {kappa:g} MPa"
+            raise source.refuse((*keys, blamed), values[blamed], allowed) from None
+        for key in ("c10", "c01"):
+            with found.gathering():
+                source.checked(keys, MooneyRivlin, ANY_RUBBER | {key: values[key]})
+        raise source.refuse((*keys, blamed), refusal.value, refusal.allowed) from None
+
+
 class _Muscles:
-    """Resolves ``base`` and ``angle_of`` among the muscles of a file."""
+    """Resolves ``base`` and ``angle_of`` among the muscles of a file.
+
+    Chains of them are walked and not recursed into, so they may be of any length.
+    """
 
     def __init__(
         self,
         source: Source,
+        findings: Findings,
         entries: Mapping[str, MuscleEntry],
         rubbers: Mapping[str, MooneyRivlin],
         limits: Mapping[str, Limits],
         modulus: float,
     ) -> None:
-        self.source, self.entries, self.rubbers = source, entries, rubbers
+        self.source, self.findings = source, findings
+        self.entries, self.rubbers = entries, rubbers
         self.limits, self.modulus = limits, modulus
         self._complete: dict[str, dict[str, Any]] = {}
         self._built: dict[str, StudiedMuscle] = {}
+        self._tried: set[str] = set()
+        self._lost: set[str] = set()  # that lead to a muscle that is not there, or in a circle
 
-    def complete(self, name: str, heirs: tuple[str, ...] = ()) -> dict[str, Any]:
+    def complete(self, name: str) -> dict[str, Any]:
         """The entry of a muscle with what it inherits."""
-        if name not in self._complete:
-            own = self.entries[name].model_dump(exclude_none=True)
-            inherited: dict[str, Any] = {}
-            if "base" in own:
-                self._check_reference(("muscles", name, "base"), own["base"], (*heirs, name))
-                inherited = dict(self.complete(own.pop("base"), (*heirs, name)))
-            if any(key in own for key in ANGLE_KEYS):
-                inherited = {k: v for k, v in inherited.items() if k not in ANGLE_KEYS}
-            if own.get("threads") == "none":
-                inherited = {k: v for k, v in inherited.items() if k not in BRAID_KEYS}
-            measured = {k: v for k, v in own.items() if k not in NOT_MEASURED}
-            if any(value != inherited.get(key) for key, value in measured.items()):
-                inherited.pop("reference", None)  # the maps are of the other muscle
-            self._complete[name] = inherited | own
+        if name in self._lost:
+            raise AlreadyRefused
+        chain = {name: None}  # in order
+        last = name
+        while last not in self._complete and (base := self.entries[last].base):
+            self._check_reference("base", base, chain)
+            chain[base] = None
+            last = base
+        for each in reversed(chain):
+            if each not in self._complete:
+                own = self.entries[each].model_dump(exclude_none=True)
+                base = own.pop("base", None)
+                inherited = dict(self._complete[base]) if base else {}
+                if any(key in own for key in ANGLE_KEYS):
+                    inherited = {k: v for k, v in inherited.items() if k not in ANGLE_KEYS}
+                if own.get("threads") == "none":
+                    inherited = {k: v for k, v in inherited.items() if k not in BRAID_KEYS}
+                measured = {k: v for k, v in own.items() if k not in NOT_MEASURED}
+                if any(value != inherited.get(key) for key, value in measured.items()):
+                    inherited.pop("reference", None)  # the maps are of the other muscle
+                self._complete[each] = inherited | own
         return self._complete[name]
 
-    def built(self, name: str, askers: tuple[str, ...] = ()) -> StudiedMuscle:
-        """The muscle of a name, with its materials; ``askers`` need it for their angle."""
-        if name not in self._built:
-            values, keys = self.complete(name), ("muscles", name)
-            bare = values.get("threads") == "none"
-            self._check_keys(keys, values, BRAID_KEYS if bare else ())
-            cap_length = CAP_PER_WALL * values["wall_thickness"]
-            shape = {"cap_length": cap_length} | {k: values[k] for k in SHAPE_KEYS if k in values}
-            checked = self.source.checked
-            tube = checked(keys, Muscle, shape | {"braid": None})
-            muscle = tube if bare else replace(tube, braid=self._braid(name, values, askers))
-            thread, room = None, ""
-            if muscle.braid is not None:
-                thread = checked(keys, Thread, {"stiffness": values[EA]}, {"stiffness": EA})
-                threads = muscle.braid, thread, values.get("thread_diameter")
-                checked(keys, partial(fit.check, *threads), {})
-                room = fit.note(*threads, self.modulus)
-            self._built[name] = StudiedMuscle(
-                muscle=muscle,
-                material=values["material"],
-                rubber=self.rubbers[values["material"]],
-                thread=thread,
-                limits=checked(
-                    keys,
-                    partial(replace, self.limits[values["material"]]),
-                    {"thread_strength": values.get("thread_strength"), "room": room},
-                ),
-                reference=values.get("reference", ()),
-            )
+    def built(self, name: str) -> StudiedMuscle:
+        """The muscle of a name, with its materials."""
+        chain = {name: None}  # in order
+        last = name
+        while last not in self._built and (other := self._angle_source(last)):
+            self._check_reference("angle_of", other, chain)
+            chain[other] = None
+            last = other
+        for each in reversed(chain):
+            if each in self._tried and each not in self._built:
+                raise AlreadyRefused
+            if each not in self._built:
+                self._tried.add(each)
+                self._built[each] = self._build(each)
         return self._built[name]
 
-    def _check_keys(self, keys: Keys, values: dict[str, Any], unused: Sequence[str]) -> None:
-        needed = ["inner_diameter", "wall_thickness", "length", "threads", "material"]
-        for key in needed if unused else [*needed, "layer_depths", EA]:
-            if key not in values:
-                raise self.source.refuse((*keys, key), None, "this key must be given")
-        for key in unused:
-            if key in values:
-                raise self.source.refuse((*keys, key), values[key], "not with threads: none")
-        if values["material"] not in self.rubbers:
-            allowed = choices(values["material"], self.rubbers)
-            raise self.source.refuse((*keys, "material"), values["material"], allowed)
+    def _angle_source(self, name: str) -> str | None:
+        values = self.complete(name)
+        return values.get("angle_of") if values.get("threads") != "none" else None
 
-    def _braid(self, name: str, values: dict[str, Any], askers: tuple[str, ...]) -> Braid:
-        keys = ("muscles", name)
+    def _build(self, name: str) -> StudiedMuscle:
+        """The muscle of its complete entry; all that is wrong with it is noted."""
+        values = self.complete(name)
+        bare = values.get("threads") == "none"
+        self._check_keys(name, values, BRAID_KEYS if bare else ())
+        made: dict[str, Any] = {"thread": None}
+        parts: dict[str, Callable[[], Any]] = {
+            "rubber": lambda: self._rubber(name, values),
+            "muscle": lambda: self._muscle(name, values, bare),
+        }
+        if not bare:
+            parts["thread"] = lambda: self._checked(
+                name, Thread, {"stiffness": values[EA]}, {}, {"stiffness": EA}
+            )
+        for part, make in parts.items():
+            with self.findings.gathering():
+                made[part] = make()
+        if not parts.keys() <= made.keys() or (not bare and made["thread"] is None):
+            raise AlreadyRefused
+        limits = {"thread_strength": values.get("thread_strength"), "room": ""}
+        if not bare:
+            threads = made["muscle"].braid, made["thread"], values.get("thread_diameter")
+            self._checked(name, partial(fit.check, *threads), {}, {})
+            limits["room"] = fit.note(*threads, self.modulus)
+        material = values["material"]
+        if material not in self.limits:
+            raise AlreadyRefused
+        return StudiedMuscle(
+            material=material,
+            limits=self._checked(name, partial(replace, self.limits[material]), limits, {}),
+            reference=values.get("reference", ()),
+            **made,
+        )
+
+    def _rubber(self, name: str, values: dict[str, Any]) -> MooneyRivlin:
+        material = values["material"]
+        if material not in self.rubbers:
+            if material in self.source.names("materials"):
+                raise AlreadyRefused
+            known = self.source.names("materials")
+            raise self._refuse(name, "material", material, choices(material, known))
+        return self.rubbers[material]
+
+    def _muscle(self, name: str, values: dict[str, Any], bare: bool) -> Muscle:
+        cap_length = CAP_PER_WALL * max(0, values["wall_thickness"])
+        shape = {"cap_length": cap_length} | {k: values[k] for k in SHAPE_KEYS if k in values}
+        tube = self._checked(name, Muscle, shape | {"braid": None}, ANY_SHAPE)
+        for key, allowed in checks.proportions(tube):
+            raise self._refuse(name, key, values[key], allowed)
+        return tube if bare else replace(tube, braid=self._braid(name, values))
+
+    def _checked(
+        self,
+        name: str,
+        build: Callable[..., T],
+        values: dict[str, Any],
+        beside: dict[str, Any],
+        renamed: Mapping[str, str] | None = None,
+    ) -> T:
+        """``build(**values)``; what else is wrong, beside values that are right, is noted too."""
+        try:
+            return build(**values)
+        except Refusal as refusal:
+            for key in beside if len(values) > 1 else ():
+                with self.findings.gathering():
+                    self._checked(name, build, beside | {key: values[key]}, {}, renamed)
+            key = (renamed or {}).get(refusal.field, refusal.field)
+            raise self._refuse(name, key, refusal.value, refusal.allowed) from None
+
+    def _check_keys(self, name: str, values: dict[str, Any], unused: Sequence[str]) -> None:
+        needed = ["inner_diameter", "wall_thickness", "length", "threads", "material"]
+        needed += [] if unused else ["layer_depths", EA]
+        missing = [key for key in needed if key not in values]
+        for key in missing:
+            self.findings.add(self._refuse(name, key, None, "this key must be given"))
+        extra = [key for key in unused if key in values]
+        for key in extra:
+            self.findings.add(self._refuse(name, key, values[key], "not with threads: none"))
+        if missing or extra:
+            raise AlreadyRefused
+
+    def _braid(self, name: str, values: dict[str, Any]) -> Braid:
         given = [key for key in ANGLE_KEYS if key in values]
         if len(given) != 1:
-            raise self.source.refuse(
-                (*keys, given[1] if given else "lead"),
-                values[given[1]] if given else None,
-                f"exactly one of {', '.join(ANGLE_KEYS)}",
-            )
-        diameters = self._layer_diameters(keys, values)
+            key = given[1] if given else "lead"
+            allowed = f"exactly one of {', '.join(ANGLE_KEYS)}"
+            raise self._refuse(name, key, values.get(key), allowed)
+        diameters = self._layer_diameters(name, values)
         common = {"threads": values["threads"], "layer_diameters": diameters}
-        checked = self.source.checked
+        renamed = {"layer_diameters": "layer_depths", "lead": given[0]}
         if given == ["angle"]:
-            return checked(keys, Braid.from_angle, common | {"angle": values["angle"]})
+            values = common | {"angle": values["angle"]}
+            return self._checked(name, Braid.from_angle, values, {}, renamed)
         if given == ["lead"]:
-            return checked(keys, Braid, common | {"lead": values["lead"]})
-        other = values["angle_of"]
-        self._check_reference((*keys, "angle_of"), other, (*askers, name))
-        braid = self.built(other, (*askers, name)).muscle.braid
-        if braid is None:
-            raise self.source.refuse((*keys, "angle_of"), other, "a muscle with a braid")
-        lead = braid.lead * sum(diameters) / sum(braid.layer_diameters)
-        return checked(keys, Braid, common | {"lead": lead})
+            lead = values["lead"]
+        else:
+            braid = self._built[values["angle_of"]].muscle.braid
+            if braid is None:
+                raise self._refuse(name, "angle_of", values["angle_of"], "a muscle with a braid")
+            lead = braid.lead * sum(diameters) / sum(braid.layer_diameters)
+        braid = self._checked(name, Braid, common | {"lead": lead}, {}, renamed)
+        for allowed in checks.angle(braid):
+            raise self._refuse(name, given[0], values[given[0]], allowed)
+        return braid
 
-    def _layer_diameters(self, keys: Keys, values: dict[str, Any]) -> tuple[float, float]:
+    def _layer_diameters(self, name: str, values: dict[str, Any]) -> tuple[float, float]:
         """Inner diameter plus twice the depths, in exact decimals."""
         inner, outer = values["layer_depths"]
         if not 0 < inner < outer < values["wall_thickness"]:
-            raise self.source.refuse(
-                (*keys, "layer_depths"),
-                list(values["layer_depths"]),
+            allowed = (
                 "two rising depths, more than 0 and less than the wall thickness of "
-                f"{values['wall_thickness']:g} (mm)",
+                f"{values['wall_thickness']:g} (mm)"
             )
+            depths = [(d - values["inner_diameter"]) / 2 for d in (inner, outer)]
+            if 0 < depths[0] < depths[1] < values["wall_thickness"]:
+                allowed += (
+                    f"; these may be diameters, whose depths are {depths[0]:g}, {depths[1]:g}"
+                )
+            raise self._refuse(name, "layer_depths", [inner, outer], allowed)
         d0, d1, d2 = (Decimal(str(v)) for v in (values["inner_diameter"], inner, outer))
         return float(d0 + 2 * d1), float(d0 + 2 * d2)
 
-    def _check_reference(self, keys: Keys, other: str, seen: tuple[str, ...]) -> None:
-        if other not in self.entries:
-            raise self.source.refuse(keys, other, choices(other, self.entries))
-        if other in seen:
-            raise self.source.refuse(keys, other, "no circle: " + " -> ".join((*seen, other)))
+    def _refuse(self, name: str, key: str, value: object, allowed: str) -> StudyError:
+        """The error for a value of a muscle, at the place where it was written."""
+        owner = self.source.owner(name, key)
+        if owner != name:
+            with self.findings.gathering():
+                self.built(owner)
+            if owner not in self._built and self.findings.found:
+                raise AlreadyRefused
+            allowed = f"in {name}: {allowed}"
+        return self.source.refuse(("muscles", owner, key), value, allowed)
+
+    def _check_reference(self, key: str, other: str, chain: dict[str, None]) -> None:
+        """Refuse what the last muscle of a chain names if it is not there, or in the chain."""
+        *_, last = chain
+        if other in self.entries and other not in self._lost and other not in chain:
+            return
+        known = self.source.names("muscles")
+        refused = other in self._lost or (other in known and other not in self.entries)
+        self._lost.update(chain)
+        if refused:
+            raise AlreadyRefused
+        allowed = choices(other, known)
+        if other in chain:
+            names = [*chain]
+            circle = [*names[names.index(other) :], other]
+            said = circle if len(circle) <= LISTED else [*circle[:LISTED], "...", other]
+            allowed = "no circle: " + " -> ".join(said)
+        raise self.source.refuse(("muscles", last, key), other, allowed)
 
 
-def _variant(source: Source, file: StudyFile, name: str, entry: VariantEntry) -> Variant:
+def _variant(
+    source: Source, found: Findings, file: StudyFile, name: str, entry: VariantEntry
+) -> Variant:
     """Defaults, then the study's numerics, then the variant's own."""
-    own = ("variants", name, "numerics")
     parts = {}
     for kind, build in KINDS.items():
         values: dict[str, Any] = {}
-        for entries in (file.numerics, entry.numerics):
+        places: dict[str, Keys] = {}
+        for keys, entries in (
+            (("numerics", kind), file.numerics),
+            (("variants", name, "numerics", kind), entry.numerics),
+        ):
             part = getattr(entries, kind)
-            values |= part.model_dump(exclude_none=True) if part else {}
-        keys = (*own, kind) if getattr(entry.numerics, kind) else ("numerics", kind)
-        parts[kind] = source.checked(keys, build, values)
+            given = part.model_dump(exclude_none=True) if part else {}
+            values |= given
+            places |= dict.fromkeys(given, keys)
+        for key in values:
+            with found.gathering():
+                source.checked(places[key], build, {key: values[key]})
+        try:
+            parts[kind] = build(**values)
+        except Refusal:
+            continue
+    if parts.keys() != KINDS.keys():
+        raise AlreadyRefused
     effects = Effects(**dict(entry.effects))
     return Variant(effects=effects, numerics=Numerics(**parts))
-
-
-def _check_scene(source: Source, study: Study, keys: Keys, scene: Scene) -> None:
-    """Names that exist, and the factors that the path takes and no others."""
-    for key, known in (("muscles", study.muscles), ("variants", study.variants)):
-        for name in getattr(scene, key):
-            if name not in known:
-                raise source.refuse((*keys, key), name, choices(name, known))
-    factors = [HELD_KEY[scene.path], SWEPT_KEY[scene.path]] if scene.path else []
-    for key in ("pressure", "contraction", "load"):
-        value = getattr(scene, key)
-        if (value is None) == (key in factors):
-            place = f"on an {scene.path} path" if scene.path else "without a path"
-            needed = "must be given" if value is None else "is not used"
-            raise source.refuse((*keys, key), value, f"this key {needed} {place}")
-    for key in ("models", "effects", "tolerance") if scene.path is None else ():
-        if getattr(scene, key):
-            raise source.refuse((*keys, key), getattr(scene, key), "left out without a path")
-    for quantity in scene.quantities:
-        _check_quantity(source, (*keys, "quantities"), scene, quantity)
-
-
-def _check_calibration(source: Source, study: Study, keys: Keys, entry: CalibrationEntry) -> None:
-    """A muscle with threads, and bounds within which something can be fitted."""
-    if entry.muscle not in study.muscles:
-        raise source.refuse((*keys, "muscle"), entry.muscle, choices(entry.muscle, study.muscles))
-    if study.muscles[entry.muscle].thread is None:
-        raise source.refuse((*keys, "muscle"), entry.muscle, "a muscle with a braid")
-    for key, (low, high) in entry.bounds:
-        if not 0 < low < high:
-            allowed = "two rising numbers > 0"
-            raise source.refuse((*keys, "bounds", key), [low, high], allowed)
-    for key in ("fit_pressure", "report_pressure"):
-        if min(getattr(entry, key)) <= 0:
-            raise source.refuse((*keys, key), list(getattr(entry, key)), "pressures > 0")
-
-
-def _check_quantity(source: Source, keys: Keys, scene: Scene, quantity: str) -> None:
-    only_on = {"threshold_pressure": "isometric", "free_contraction": "isobaric"}
-    path = only_on.get(quantity, scene.path)
-    if scene.path is None or path != scene.path:
-        raise source.refuse(keys, quantity, f"this quantity only on an {path or 'y'} path")
-    for model in scene.models or ():
-        if model not in QUANTITIES[quantity]:
-            allowed = f"this quantity only by {', '.join(QUANTITIES[quantity])}; not {model}"
-            raise source.refuse(keys, quantity, allowed)

@@ -24,7 +24,7 @@ from solver.status import StateStatus
 from workflow.analyses.calibration.fit import Fitted, Parameter, fit
 from workflow.analyses.calibration.forward_model import Trial
 from workflow.data import bench, deviation
-from workflow.data.reference import ForceMap
+from workflow.data.reference import CONTRACTIONS, ForceMap
 from workflow.study.errors import StudyError
 from workflow.study.schema import CalibrationEntry
 from workflow.study.study import StudiedMuscle, Study
@@ -32,8 +32,6 @@ from workflow.study.study import StudiedMuscle, Study
 UNITS = {"thread_stiffness": "N", "c10": "MPa", "c01": "MPa"}
 THREAD_MODULUS = 2100.0  # MPa, section 2.2 of the paper
 CHECK = "solid"
-FURTHEST = 0.2  # contraction, as in workflow/data/deviation.py
-FEW = 5  # points of a curve
 
 
 @dataclass(frozen=True)
@@ -99,11 +97,11 @@ def _residuals(
     """Function of the values: forces minus those of the map, at the fitted pressures [N]."""
     wanted: dict[float, tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
     for pressure in entry.fit_pressure:
-        stops = _stops(found, pressure)
+        stops = bench.stops(found, pressure)
         if not stops.size:
             raise StudyError(
                 f"calibration.{name}.fit_pressure: {entry.reference} has no force at "
-                f"{pressure:g} MPa between 0 and {100 * FURTHEST:g} %"
+                f"{pressure:g} MPa between 0 and {100 * bench.FURTHEST:g} %"
             )
         wanted[pressure] = stops, found.force(stops, pressure)
 
@@ -118,15 +116,6 @@ def _residuals(
     return residuals
 
 
-def _stops(found: ForceMap, pressure: float) -> NDArray[np.float64]:
-    """Contractions to fit at a pressure."""
-    own = found.contractions(pressure)
-    if np.sum((own >= 0) & (own <= FURTHEST)) < FEW:
-        own = np.union1d(own, deviation.CONTRACTIONS)
-    own = own[(own >= 0) & (own <= FURTHEST)]
-    return own[found.inside(own, pressure)]
-
-
 def _states(result: Calibration, found: ForceMap, trial: Trial) -> pd.DataFrame:
     """Forces before and after at the states of the rule, and those of the map."""
     entry, frames = result.entry, []
@@ -137,9 +126,9 @@ def _states(result: Calibration, found: ForceMap, trial: Trial) -> pd.DataFrame:
         ("after", result.values, CHECK),
     ):
         for pressure in pressures:
-            force = trial.forces(values, model, pressure, deviation.CONTRACTIONS)
+            force = trial.forces(values, model, pressure, CONTRACTIONS)
             status = np.where(np.isfinite(force), StateStatus.CONVERGED.value, "missing")
-            axes = {"pressure": [pressure], "contraction": list(deviation.CONTRACTIONS)}
+            axes = {"pressure": [pressure], "contraction": list(CONTRACTIONS)}
             rows = deviation.states(
                 found,
                 xr.DataArray(force[None], axes),

@@ -1,0 +1,270 @@
+"""What must fit together in a study before anything runs, and what of it is unusual."""
+
+import importlib
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from geometry.muscle import Braid, Muscle
+from geometry.refusal import Refusal
+from solver import geometric
+from solver.load_path import LoadPath
+from workflow.study import figure_needs, units
+from workflow.study.errors import StudyError, choices, shown
+from workflow.study.schema import (
+    HELD_KEY,
+    QUANTITIES,
+    SWEPT_KEY,
+    CalibrationEntry,
+    Scene,
+    StudyFile,
+)
+from workflow.study.source import Keys, Source
+
+if TYPE_CHECKING:
+    from workflow.study.study import StudiedMuscle, Study
+
+ONLY_ON = {"threshold_pressure": "isometric", "free_contraction": "isobaric"}  # quantity: path
+HIGHEST = 20.0  # MPa: no pressure of such a muscle
+MOST_CURVES = 10_000  # of a scene: more is a typing error in a grid
+SHORTEST, LONGEST = 0.02, 1e4  # length / inner diameter
+THINNEST, THICKEST = 1e-3, 10.0  # wall / inner diameter
+ANGLES = (0.25, 89.75)  # degrees; beyond, threads lie along the axis or around it
+WEAK = 1.0  # stiffness of all threads along their length, as a share of the rubber's
+FEEBLE, HUGE = 1e-3, 10.0  # load as a share of Eq. (1)
+
+
+def scene(study: "Study", name: str) -> Iterator[StudyError]:
+    """Names that exist, the factors that the path takes and no others, and their values."""
+    source, asked, keys = study.source, study.scenes[name], ("scenes", name)
+    for key in ("muscles", "variants"):
+        known = ["default"] * (key == "variants") + source.names(key)
+        for named in getattr(asked, key):
+            if named not in known:
+                yield source.refuse((*keys, key), named, choices(named, known))
+    lacking = list(figure_needs.lacking(name, asked))
+    for key, value, allowed in lacking:
+        yield source.refuse((*keys, key), value, allowed)
+    if asked.path is not None and "path" in {key for key, _, _ in lacking}:
+        return
+    if asked.path is None:
+        unused = ("pressure", "contraction", "load", "models", "effects", "tolerance", "quantities")
+        for key in [key for key in unused if getattr(asked, key)][:1]:
+            value = _as_written(getattr(asked, key))
+            yield source.refuse((*keys, key), value, "this key is not used without a path")
+        return
+    factors = [HELD_KEY[asked.path], SWEPT_KEY[asked.path]]
+    for key in ("pressure", "contraction", "load"):
+        value = _as_written(getattr(asked, key))
+        if (value is None) == (key in factors):
+            needed = "must be given" if value is None else "is not used"
+            yield source.refuse((*keys, key), value, f"this key {needed} on an {asked.path} path")
+    for quantity in asked.quantities:
+        allowed = _quantity(asked, quantity)
+        if allowed:
+            yield source.refuse((*keys, "quantities"), quantity, allowed)
+    if all(getattr(asked, key) is not None for key in factors):
+        yield from _values(source, keys, asked)
+
+
+def _as_written(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _quantity(asked: Scene, quantity: str) -> str:
+    """What is allowed in place of a quantity that cannot be had; empty if it can."""
+    path = ONLY_ON.get(quantity, asked.path)
+    if path != asked.path:
+        return f"this quantity only on an {path} path"
+    for model in asked.models or ():
+        if model not in QUANTITIES[quantity]:
+            return f"this quantity only by {', '.join(QUANTITIES[quantity])}; not {model}"
+    return ""
+
+
+def _values(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
+    """Values of the factors that no state can have."""
+    assert asked.path is not None
+    held_key, swept_key = HELD_KEY[asked.path], SWEPT_KEY[asked.path]
+    high = [p for p in asked.pressure or () if p > HIGHEST]
+    if high:
+        yield source.refuse((*keys, "pressure"), high[0], f"pressures up to {HIGHEST:g} (MPa)")
+    curves = math.prod(map(len, (asked.muscles, asked.variants, asked.models or (1,), asked.held)))
+    if curves > MOST_CURVES:
+        allowed = f"at most {MOST_CURVES} curves in a scene, not {curves}"
+        yield source.refuse((*keys, held_key), len(asked.held), allowed)
+    for key, values in (
+        (held_key, [(h, (0.0,)) for h in asked.held]),
+        (swept_key, [(0.0, asked.swept)]),
+    ):
+        for held, stops in values:
+            try:
+                LoadPath(kind=asked.path, held=held, stops=stops)
+            except Refusal as refusal:
+                if refusal.value not in high:
+                    yield source.refuse((*keys, key), refusal.value, refusal.allowed)
+                break
+
+
+def calibration(study: "Study", name: str) -> Iterator[StudyError]:
+    """A muscle with threads, bounds within which something can be fitted, and forces to fit to."""
+    source, entry, keys = study.source, study.calibration[name], ("calibration", name)
+    made, muscles = study.muscles.get(entry.muscle), source.names("muscles")
+    if entry.muscle not in muscles:
+        yield source.refuse((*keys, "muscle"), entry.muscle, choices(entry.muscle, muscles))
+    elif made is not None and made.thread is None:
+        yield source.refuse((*keys, "muscle"), entry.muscle, "a muscle with a braid")
+    for key, (low, high) in entry.bounds:
+        if not 0 < low < high:
+            allowed = "two rising numbers > 0"
+            yield source.refuse((*keys, "bounds", key), [low, high], allowed)
+    positive = True
+    for key in ("fit_pressure", "report_pressure"):
+        if min(getattr(entry, key)) <= 0:
+            positive = False
+            yield source.refuse((*keys, key), list(getattr(entry, key)), "pressures > 0")
+    if made is not None and made.thread is not None and positive:
+        yield from _forces(source, keys, entry, made)
+        yield from _fitted(source, keys, entry, made)
+
+
+def _forces(
+    source: Source, keys: Keys, entry: CalibrationEntry, made: "StudiedMuscle"
+) -> Iterator[StudyError]:
+    """A reference that is not there, or has no forces where they are asked for."""
+    # By name, and late: what is looked at before anything runs is no source of what runs.
+    bench = importlib.import_module("workflow.data.bench")
+    place = (*keys, "reference")
+    try:
+        found = bench.read(entry.reference, made.muscle.length)
+    except StudyError as error:
+        given = f"{source.place(place)} = {shown(entry.reference)} is refused"
+        yield StudyError(f"{given}\n  {error}", source.line(place) or 0, place)
+        return
+    count = 0
+    pressures = ", ".join(f"{p:g}" for p in found.pressures[:12])
+    for key in ("fit_pressure", "report_pressure"):
+        if key == "report_pressure" and not source.has((*keys, key)):
+            continue  # those that stand where none are given are reported as far as there are any
+        for pressure in getattr(entry, key):
+            stops = len(bench.stops(found, pressure))
+            count += stops if key == "fit_pressure" else 0
+            if not stops:
+                allowed = (
+                    f"pressures within {pressures} MPa; the reference has no force at "
+                    f"{pressure:g} MPa between 0 and {100 * bench.FURTHEST:g} %"
+                )
+                at = (*keys, key) if source.has((*keys, key)) else place
+                yield source.refuse(at, pressure if at[-1] == key else entry.reference, allowed)
+    if 0 < count <= len(entry.fit):
+        at = (*keys, "fit") if source.has((*keys, "fit")) else place
+        allowed = f"fewer values than there are forces; {entry.reference} has {count} of them here"
+        yield source.refuse(at, list(entry.fit), allowed)
+
+
+def _fitted(
+    source: Source, keys: Keys, entry: CalibrationEntry, made: "StudiedMuscle"
+) -> Iterator[StudyError]:
+    """Bounds up to which there is no rubber."""
+    high = {key: getattr(entry.bounds, key)[1] for key in entry.fit if key in ("c10", "c01")}
+    try:
+        replace(made.rubber, **high)
+    except Refusal as refusal:
+        widest = max(high, key=high.__getitem__)
+        if min(high.values()) > 0:
+            at, value = (*keys, "bounds", widest), list(getattr(entry.bounds, widest))
+            yield source.refuse(
+                at, value, f"bounds up to which {refusal.field} is {refusal.allowed}"
+            )
+
+
+def proportions(tube: Muscle) -> Iterator[tuple[str, str]]:
+    """Key and what is allowed where lengths do not belong to one muscle."""
+    d, t, length = tube.inner_diameter, tube.wall_thickness, tube.length
+    for key, share, low, high in (
+        ("length", length / d, SHORTEST, LONGEST),
+        ("wall_thickness", t / d, THINNEST, THICKEST),
+    ):
+        if not low <= share <= high:
+            blamed = "inner_diameter" if units.guess("inner_diameter", d) else key
+            yield blamed, f"{key} / inner_diameter from {low:g} to {high:g}; here {share:.3g}"
+
+
+def angle(braid: Braid) -> Iterator[str]:
+    """What is allowed in place of an angle at which threads are no braid."""
+    low, high = ANGLES
+    degrees = math.degrees(braid.angle)
+    if not low <= degrees <= high:
+        yield f"braid angles from {low:g} to {high:g} degrees; here {degrees:.3g}"
+
+
+def unusual(
+    source: Source, file: StudyFile, muscles: Mapping[str, "StudiedMuscle"]
+) -> Iterator[str]:
+    """Values that can be used but look as if something else was meant, each in a line."""
+    for keys, value in _written(file):
+        guess = units.guess(keys[-1], value)
+        if guess:
+            yield f"{source.place(keys)} = {shown(value)} is unusual; perhaps {guess}"
+    yield from dict.fromkeys(
+        line for name, made in muscles.items() for line in _unusual_braid(source, name, made)
+    )
+    for name, asked in file.scenes.items():
+        known = [muscles[m] for m in asked.muscles if m in muscles]
+        yield from _unusual_load(source, ("scenes", name, "load"), asked, known)
+
+
+def _written(file: StudyFile) -> Iterator[tuple[Keys, Any]]:
+    """All values of entries, as they were written."""
+    sections: dict[str, Mapping[str, Any]] = {
+        "materials": file.materials,
+        "muscles": file.muscles,
+        "scenes": file.scenes,
+        "calibration": file.calibration,
+    }
+    for section, entries in sections.items():
+        for name, entry in entries.items():
+            for key in entry.model_fields_set:
+                value = getattr(entry, key)
+                yield (section, name, key), _as_written(value)
+    for key in sorted(file.limits.model_fields_set):
+        yield ("limits", key), getattr(file.limits, key)
+
+
+def _unusual_braid(source: Source, name: str, made: "StudiedMuscle") -> Iterator[str]:
+    braid, thread, tube = made.muscle.braid, made.thread, made.muscle
+    if braid is None or thread is None:
+        return
+    area = math.pi * (tube.inner_diameter + tube.wall_thickness) * tube.wall_thickness
+    key = "thread_stiffness"
+    share = 2 * braid.threads * thread.stiffness / (3 * made.rubber.shear_modulus * area)
+    if share < WEAK:
+        place = source.place(("muscles", source.owner(name, key), key))
+        yield (
+            f"{place} = {thread.stiffness:g} is unusual; all threads are softer than the rubber, "
+            f"{thread.stiffness:g} kN would be {1000 * thread.stiffness:g} N"
+        )
+
+
+def _unusual_load(
+    source: Source, keys: Keys, asked: Scene, known: list["StudiedMuscle"]
+) -> Iterator[str]:
+    """Loads that are nothing, or far too much, for the muscles of a scene."""
+    loads = [abs(load) for load in asked.load or () if load]
+    pulls = [
+        abs(float(geometric.force(made.muscle, max(asked.pressure), 0.0)))
+        for made in known
+        if made.thread is not None and asked.pressure
+    ]
+    if not loads or not pulls or not min(pulls):
+        return
+    if min(loads) < FEEBLE * min(pulls):
+        load = min(loads)
+        yield f"{source.place(keys)} = {load:g} is unusual; {load:g} kN would be {1000 * load:g} N"
+    if max(loads) > HUGE * max(pulls):
+        load = max(loads)
+        yield (
+            f"{source.place(keys)} = {load:g} is unusual; Eq. (1) pulls with {max(pulls):.4g} N, "
+            f"and {load:g} mN would be {load / 1000:g} N"
+        )

@@ -1,0 +1,58 @@
+"""Which scenes are figures, and what a figure must be given to be drawn."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from solver.load_path import PathKind
+from workflow.study.schema import Scene
+
+FOLDER = Path(__file__).parent.parent / "figures"
+EVERY = tuple(PathKind)
+
+
+@dataclass(frozen=True)
+class Needs:
+    """Paths that a figure can show (none: the muscles themselves), muscles, quantities."""
+
+    paths: tuple[str, ...] = EVERY
+    muscles: int = 1
+    quantities: tuple[str, ...] = ()
+
+
+NEEDS = {  # of the figures of the paper
+    "fig03": Needs(()),
+    "fig04": Needs(("isobaric",)),
+    "fig05": Needs(quantities=("stress",)),
+    "fig06": Needs(("isometric",)),
+    "fig07": Needs(("isometric",)),
+    "fig08": Needs(("isotonic",)),
+    "fig09": Needs(("isobaric",)),
+    "fig10": Needs(("isobaric",)),
+    "fig11": Needs(("isobaric",), muscles=2),
+    "fig12": Needs(("isobaric", "isometric")),
+    "fig13": Needs(("isotonic",)),
+}
+
+
+def drawn(scene: str) -> bool:
+    """Whether a scene is drawn as the figure of its name; any other is in the dataset only."""
+    return scene.startswith("fig") and (FOLDER / f"{scene}.py").exists()
+
+
+def lacking(name: str, scene: Scene) -> Iterator[tuple[str, object, str]]:
+    """Key, value and what is allowed of all that keeps a scene from being its figure."""
+    needs = NEEDS.get(name) if drawn(name) else None
+    if needs is None:
+        return
+    if (scene.path or "none") not in (needs.paths or ("none",)):
+        if needs.paths:
+            yield "path", scene.path, f"{' or '.join(needs.paths)}, which {name} shows"
+        else:
+            yield "path", scene.path, f"no path: {name} shows the muscles themselves"
+    if len(scene.muscles) < needs.muscles:
+        yield "muscles", list(scene.muscles), f"at least {needs.muscles} muscles in {name}"
+    for quantity in needs.quantities:
+        if quantity not in scene.quantities:
+            given = list(scene.quantities) or None
+            yield "quantities", given, f"with {quantity}, which {name} shows"

@@ -1,0 +1,65 @@
+"""Values that look as if they were given in another unit, and the guess in which."""
+
+from dataclasses import dataclass, field
+
+from workflow.study.values import is_possible
+
+LENGTHS = {"m": 1e3, "um": 1e-3}  # in mm
+STRESSES = {"kPa": 1e-3, "Pa": 1e-6}  # in MPa
+
+
+@dataclass(frozen=True)
+class Usual:
+    """Where the values of a key lie in practice, widely; and what else they may have been given in.
+
+    Attributes
+    ----------
+    others : unit: its size in the unit of the study file
+    """
+
+    unit: str
+    low: float
+    high: float
+    others: dict[str, float] = field(hash=False)
+
+    def guess(self, value: float) -> str:
+        """``300 kPa, that is 0.3 MPa`` where an unusual value is a usual one in another unit."""
+        if self.low <= abs(value) <= self.high or not value:
+            return ""
+        return " or ".join(
+            f"{value:g} {unit}, that is {value * size:.6g} {self.unit}".rstrip()
+            for unit, size in self.others.items()
+            if self.low <= abs(value * size) <= self.high
+        )
+
+
+PRESSURE = Usual("MPa", 0.05, 1.2, STRESSES | {"bar": 0.1, "psi": 0.00689476})
+USUAL = {
+    "c10": Usual("MPa", 1e-3, 10, STRESSES | {"GPa": 1e3}),
+    "c01": Usual("MPa", 0, 10, STRESSES),
+    "kappa": Usual("MPa", 10, 1e5, STRESSES | {"GPa": 1e3}),
+    "inner_diameter": Usual("mm", 0.1, 500, LENGTHS),
+    "wall_thickness": Usual("mm", 0.005, 100, LENGTHS),
+    "length": Usual("mm", 1, 20_000, LENGTHS),
+    "cap_length": Usual("mm", 0.005, 1000, LENGTHS),
+    "layer_depths": Usual("mm", 0.002, 100, LENGTHS),
+    "lead": Usual("mm", 0.5, 20_000, LENGTHS),
+    "angle": Usual("degrees", 2, 90, {"rad": 57.29578}),
+    "thread_stiffness": Usual("N", 0.01, 1e6, {"kN": 1e3, "mN": 1e-3}),
+    "pressure": PRESSURE,
+    "fit_pressure": PRESSURE,
+    "report_pressure": PRESSURE,
+    "contraction": Usual("", 0.01, 0.6, {"%": 0.01}),
+    "tolerance": Usual("", 1e-6, 0.999, {"%": 0.01}),
+    "memory": Usual("MB", 100, 1e6, {"GB": 1e3, "kB": 1e-3}),
+    "modulus": Usual("MPa", 10, 1e6, {"GPa": 1e3, "Pa": 1e-6}),
+}
+
+
+def guess(key: object, value: object) -> str:
+    """What a value of a key, or the first such value of a list, may have meant; else empty."""
+    usual = USUAL.get(str(key))
+    values = value if isinstance(value, list | tuple) else [value]
+    numbers = [v for v in values if is_possible(v)]
+    found = [usual.guess(v) for v in numbers] if usual else []
+    return next((said for said in found if said), "")
