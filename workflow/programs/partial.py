@@ -10,6 +10,7 @@ from workflow.data import dataset, records
 from workflow.figures import figure
 from workflow.programs import add_study, plan_of
 from workflow.run import failures
+from workflow.study import figure_needs
 
 FOLDER = Path("results/partial")
 
@@ -29,7 +30,7 @@ def run(given: argparse.Namespace) -> int:
     failures.write(plan, solutions, FOLDER / "tables/failures.csv")
     print(f"{len(solutions) - missing} of {len(solutions)} cases are solved", flush=True)
     drawn, status = 0, 0
-    for scene in filter(figure.drawn, plan.study.scenes):
+    for scene in filter(figure_needs.drawn, plan.study.scenes):
         try:
             figure.make(plan, scene, FOLDER / f"figures/{scene}.png", partial=True)
             drawn += 1
