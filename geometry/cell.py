@@ -22,9 +22,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from geometry.gmsh_file import writing
-from geometry.grading import UnbuildableMesh
+from geometry.grading import OF_WALL, UnbuildableMesh
 from geometry.labels import Boundary, Region
-from geometry.muscle import Muscle
+from geometry.muscle import ONE, Muscle
 from geometry.refusal import is_count, is_number
 from geometry.seal import seal
 
@@ -52,11 +52,11 @@ class CellMesh:
         Naming the field, its value and what is allowed.
     """
 
-    thread_size: float = field(default=1.0, metadata={"unit": "thread radius"})
-    body_size: float = field(default=0.3, metadata={"unit": "wall thickness"})
-    growth: float = field(default=0.5, metadata={"unit": "1"})  # of the size, with the distance
-    refinement: int = field(default=1, metadata={"unit": "1"})
-    repeats: int = field(default=1, metadata={"unit": "1"})
+    thread_size: float = field(default=1.0, metadata=ONE | {"relative_to": "thread radius"})
+    body_size: float = field(default=0.3, metadata=OF_WALL)
+    growth: float = field(default=0.5, metadata=ONE)  # of the size, with the distance
+    refinement: int = field(default=1, metadata=ONE)
+    repeats: int = field(default=1, metadata=ONE)
 
     def __post_init__(self) -> None:
         for name in ("thread_size", "body_size", "growth"):

@@ -16,9 +16,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.muscle import Muscle
+from geometry.muscle import ONE, Muscle
 from geometry.refusal import Refusal, is_count, is_number
 
+OF_WALL = ONE | {"relative_to": "wall thickness"}
+OF_DIAMETER = ONE | {"relative_to": "inner diameter"}
 MIN_INTERVALS = 2  # over the half length, however short the muscle
 MAX_INTERVALS = 10_000  # in a zone: more is a slip of the pen, not a mesh
 
@@ -41,10 +43,10 @@ class Grading:
         Naming the field, its value and what is allowed.
     """
 
-    cap_step: float = field(metadata={"unit": "wall thickness"})
-    growth: float = field(metadata={"unit": "1"})  # ratio of neighbouring steps
-    body_step: float = field(metadata={"unit": "inner diameter"})
-    refinement: int = field(default=1, metadata={"unit": "1"})
+    cap_step: float = field(metadata=OF_WALL)
+    growth: float = field(metadata=ONE)  # ratio of neighbouring steps
+    body_step: float = field(metadata=OF_DIAMETER)
+    refinement: int = field(default=1, metadata=ONE)
 
     def __post_init__(self) -> None:
         for name in ("cap_step", "body_step"):

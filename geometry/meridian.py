@@ -3,14 +3,14 @@
 Coordinates x = R (the inner radius everywhere), y = Z, z = 0, in mm.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 
 from geometry.gmsh_file import writing
-from geometry.grading import Grading
+from geometry.grading import OF_DIAMETER, OF_WALL, Grading
 from geometry.labels import Boundary
-from geometry.muscle import Muscle
+from geometry.muscle import ONE, Muscle
 from geometry.seal import seal
 
 FIRST_FREE_TAG = 100  # above every label
@@ -20,9 +20,9 @@ FIRST_FREE_TAG = 100  # above every label
 class MeridianMesh(Grading):
     """Numerics of the curve mesh: about 15 segments for the muscle of the paper."""
 
-    cap_step: float = 0.5
-    growth: float = 1.35
-    body_step: float = 1.0
+    cap_step: float = field(default=0.5, metadata=OF_WALL)
+    growth: float = field(default=1.35, metadata=ONE)
+    body_step: float = field(default=1.0, metadata=OF_DIAMETER)
 
 
 def length(muscle: Muscle) -> float:

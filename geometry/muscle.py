@@ -17,7 +17,7 @@ from typing import Any
 
 from geometry.refusal import Refusal, build, is_count, is_number
 
-MM = {"unit": "mm"}
+MM, ONE = {"unit": "mm"}, {"unit": "1"}
 
 
 class UnbuildableMuscle(Refusal):
@@ -37,7 +37,7 @@ class Braid:
     """
 
     lead: float = field(metadata=MM)  # axial length of one turn
-    threads: int = field(metadata={"unit": "1"})  # in each layer
+    threads: int = field(metadata=ONE)  # in each layer
     layer_diameters: tuple[float, float] = field(metadata=MM)  # inner layer first
 
     def __post_init__(self) -> None:

@@ -20,9 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.gmsh_file import writing
-from geometry.grading import Grading, UnbuildableMesh
+from geometry.grading import OF_DIAMETER, OF_WALL, Grading, UnbuildableMesh
 from geometry.labels import Boundary, Region
-from geometry.muscle import Muscle
+from geometry.muscle import ONE, Muscle
 from geometry.refusal import is_count
 from geometry.seal import seal
 
@@ -37,10 +37,10 @@ class SectionMesh(Grading):
     band with their sum.
     """
 
-    rows: tuple[int, int, int] = field(default=(1, 1, 1), metadata={"unit": "1"})
-    cap_step: float = 1.0
-    growth: float = 1.5
-    body_step: float = 2.0
+    rows: tuple[int, int, int] = field(default=(1, 1, 1), metadata=ONE)
+    cap_step: float = field(default=1.0, metadata=OF_WALL)
+    growth: float = field(default=1.5, metadata=ONE)
+    body_step: float = field(default=2.0, metadata=OF_DIAMETER)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -116,6 +116,11 @@ class Case:
         return values
 
     @property
+    def units(self) -> dict[str, str]:
+        """Of the numbers that are of no part."""
+        return {"fields_at": self.path.units["stops"]}
+
+    @property
     def active_effects(self) -> list[str]:
         """Names of the effects that are on (solver/effects.py)."""
         return active(self.model, self.effects, braided=self.muscle.braid is not None)

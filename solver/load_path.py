@@ -20,7 +20,12 @@ class Control(IntEnum):
     CONTRACTION = 0  # 1 - l/L
     PRESSURE = 1  # MPa
     FORCE = 2  # N, positive where the muscle pulls
-    VOLUME = 3  # mm3, enclosed by the whole muscle
+    VOLUME = 3  # mm^3, enclosed by the whole muscle
+
+    @property
+    def unit(self) -> str:
+        """Of its values."""
+        return ("1", "MPa", "N", "mm^3")[self]
 
 
 class PathKind(StrEnum):
@@ -93,6 +98,11 @@ class LoadPath:
             raise UnsolvableCase("stops", self.stops, "rising values, each given once")
         if self.zero_force and self.kind is PathKind.ISOTONIC:
             raise UnsolvableCase("zero_force", True, "an isobaric or isometric path")
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of the numbers, which go with the kind."""
+        return {"held": HELD[self.kind].unit, "stops": SWEPT[self.kind].unit}
 
     @property
     def states(self) -> int:

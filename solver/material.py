@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from geometry.refusal import is_number
 from solver.refusal import UnsolvableCase
 
-MPA = {"unit": "MPa"}
+MPA, NEWTON = {"unit": "MPa"}, {"unit": "N"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +48,7 @@ class Thread:
     The paper gives E = 2100 MPa but not the area A; 315 N is A = 0.15 mm2.
     """
 
-    stiffness: float = field(metadata={"unit": "N"})  # EA
+    stiffness: float = field(metadata=NEWTON)  # EA
 
     def __post_init__(self) -> None:
         if not (is_number(self.stiffness) and self.stiffness > 0):

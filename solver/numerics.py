@@ -5,14 +5,15 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from geometry.cell import CellMesh
+from geometry.grading import OF_WALL
 from geometry.meridian import MeridianMesh
-from geometry.muscle import Muscle
+from geometry.muscle import ONE, Muscle
 from geometry.refusal import is_count, is_number
 from geometry.section import SectionMesh
-from solver.material import Thread
+from solver.material import MPA, NEWTON, Thread
 from solver.refusal import UnsolvableCase
 
-ONE = {"unit": "1"}
+DENSITY = {"unit": "N/mm^3"}  # of springs
 CLAMP_WALL = 2.0  # mm, of the muscle of the paper, for which springs and
 SLACK_DIAMETER = 20.0  # slackening were chosen
 
@@ -45,9 +46,9 @@ class Clamp:
     that are left out: a muscle scaled by a factor has its forces scaled by the square of it.
     """
 
-    ramp: float = field(default=1.0, metadata={"unit": "wall thickness"})
-    thread_stiffness: float | None = field(default=None, metadata={"unit": "N/mm3"})  # on layers
-    inner_stiffness: float | None = field(default=None, metadata={"unit": "N/mm3"})  # inside
+    ramp: float = field(default=1.0, metadata=OF_WALL)
+    thread_stiffness: float | None = field(default=None, metadata=DENSITY)  # on layers
+    inner_stiffness: float | None = field(default=None, metadata=DENSITY)  # inside
 
     def __post_init__(self) -> None:
         for name in ("ramp", "thread_stiffness", "inner_stiffness"):
@@ -75,7 +76,7 @@ class Slack:
     """
 
     width: float = field(default=1e-3, metadata=ONE)
-    stiffness: float | None = field(default=None, metadata={"unit": "N"})  # EA of that width
+    stiffness: float | None = field(default=None, metadata=NEWTON)  # EA of that width
 
     def __post_init__(self) -> None:
         if not (is_number(self.width) and 0 < self.width <= 0.1):
@@ -102,8 +103,8 @@ class Spread:
     has the radius a = ``radius`` d: sqrt(1/2) gives it the second moment of a round thread.
     """
 
-    radius: float = field(default=math.sqrt(0.5), metadata={"unit": "thread diameter"})
-    modulus: float = field(default=2100.0, metadata={"unit": "MPa"})  # E; the paper's
+    radius: float = field(default=math.sqrt(0.5), metadata=ONE | {"relative_to": "thread diameter"})
+    modulus: float = field(default=2100.0, metadata=MPA)  # E; the paper's
 
     def __post_init__(self) -> None:
         for name in ("radius", "modulus"):

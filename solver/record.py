@@ -1,6 +1,6 @@
 """The HDF5 record of one solved case: its layout, writing, reading.
 
-Layout, version 3
+Layout, version 4
 -----------------
 (512 bytes)  one line of text: file type, layout, and the SHA-256 of all that follows these bytes,
              in what HDF5 calls the user block; programs that read HDF5 skip it
@@ -8,7 +8,7 @@ Layout, version 3
              code (digest of the sources that solved it), status, reason, log (its end, if failed),
              effects (names of those that are on), unknowns (beside contraction and pressure)
 /parameters  one scalar dataset per number of the case, in groups as in the JSON;
-             attrs: units
+             attrs: units, and relative_to where it is a multiple of something
 /states      datasets of shape (state,) as in VARIABLES, attrs: units, long_name; and of
              texts: status; flags, words of solver/status.py with spaces between; note, a sentence.
              States are in the order of the path's stops, then that of zero force if asked for.
@@ -18,7 +18,7 @@ Layout, version 3
              Cauchy rr, rz, zz, tt [MPa], three rows per triangle, discontinuous between them.
              Cell: corners (4 tetrahedra, 6) = R, T, Z, r, t, z [mm, rad], stress (.., 6) = Cauchy
              stress of the rubber rr, tt, zz, rt, tz, rz [MPa], threads (.., 4) = thread stretch
-             of both layers [1] and their densities [mm/mm3].
+             of both layers [1] and their densities [mm/mm^3].
 
 A record is complete or absent (geometry/files.py). It holds no time and no date, so that the same
 case solved again gives the same bytes.
@@ -28,7 +28,7 @@ import hashlib
 import io
 import json
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -40,10 +40,10 @@ from solver.case import Case, digest
 from solver.declared import Declared
 from solver.status import CaseStatus, Flag, StateStatus
 
-FILETYPE, LAYOUT = "muscle-case", 3
+FILETYPE, LAYOUT = "muscle-case", 4
 BLOCK = 512  # bytes before the HDF5 data
 LARGEST = 2**31  # bytes of a record that is read
-PASSPORT = ("filetype", "layout", "key", "case", "status", "reason", "log", "unknowns")
+PASSPORT = ("filetype", "layout", "key", "case", "code", "status", "reason", "log", "unknowns")
 
 VARIABLES = {
     # name: (unit, long name)
@@ -52,12 +52,12 @@ VARIABLES = {
     "force": ("N", "force of the muscle, positive where it pulls"),
     "force_cap": ("N", "force from the reaction at the cap"),
     "force_midplane": ("N", "force from the reaction at mid-length"),
-    "volume": ("mm3", "enclosed volume"),
+    "volume": ("mm^3", "enclosed volume"),
     "inner_diameter_inflated": ("mm", "inner diameter at mid-length"),
     "outer_diameter": ("mm", "largest outer diameter anywhere"),
     "bulge": ("mm", "largest difference of inner radii around the tube"),
     "twist": ("rad/mm", "twist of the muscle per initial length"),
-    "torque": ("N mm", "torque that holds the ends"),
+    "torque": ("N*mm", "torque that holds the ends"),
     "equivalent_diameter": ("mm", "equivalent diameter, sign(F) sqrt(4 |F| / (pi p))"),
     "thread_stretch_min": ("1", "smallest thread stretch"),
     "thread_stretch_max": ("1", "largest thread stretch"),
@@ -65,7 +65,7 @@ VARIABLES = {
     "min_det_f": ("1", "smallest det F at a quadrature point"),
     "min_det_f_nodes": ("1", "smallest det F at a corner of an element"),
     "margin": ("1", "smallest of what must stay positive (solver/edp/state.idp)"),
-    "energy": ("N mm", "strain energy of the muscle"),
+    "energy": ("N*mm", "strain energy of the muscle"),
     "stiffness": ("N/mm", "dF/dl at fixed pressure"),
     "force_by_pressure": ("N/MPa", "dF/dp at fixed length"),
     "smoothing": ("N", "force that the smoothing of the slack law adds"),
@@ -74,28 +74,6 @@ VARIABLES = {
     "residual": ("1", "largest residual, share of the largest nodal force"),
     "iterations": ("1", "Newton iterations since the state before"),
     "cutbacks": ("1", "steps given up since the state before"),
-}
-UNITS = {  # of /parameters
-    "muscle/inner_diameter": "mm",
-    "muscle/wall_thickness": "mm",
-    "muscle/length": "mm",
-    "muscle/cap_length": "mm",
-    "muscle/braid/lead": "mm",
-    "muscle/braid/layer_diameters": "mm",
-    "rubber/c10": "MPa",
-    "rubber/c01": "MPa",
-    "rubber/kappa": "MPa",
-    "thread/stiffness": "N",
-    "numerics/slack/stiffness": "N",
-    "numerics/spread/modulus": "MPa",
-    "numerics/clamp/ramp": "wall thickness",
-    "numerics/clamp/thread_stiffness": "N/mm3",
-    "numerics/clamp/inner_stiffness": "N/mm3",
-}
-PATH_UNITS = {  # of path/held and path/stops, by kind
-    "isobaric": ("MPa", "1"),
-    "isometric": ("1", "MPa"),
-    "isotonic": ("N", "MPa"),
 }
 
 
@@ -115,6 +93,7 @@ class Solution:
     fields : state number -> name -> array, as in the layout
     log : end of the solver's output where it failed
     unknowns : what was solved for beside contraction and pressure; 0 if nothing was solved
+    code : digest of the sources that solved it, of what was read from a record
     """
 
     status: CaseStatus
@@ -126,6 +105,7 @@ class Solution:
     fields: dict[int, dict[str, NDArray[np.float64]]] = field(default_factory=dict)
     log: str = ""
     unknowns: int = 0
+    code: str = ""
 
     def __post_init__(self) -> None:
         each = self.state_status
@@ -249,6 +229,7 @@ def _read(file: Any, size: int) -> tuple[Case, Solution]:
         reason=file.attrs["reason"],
         log=file.attrs["log"],
         unknowns=int(file.attrs["unknowns"]),
+        code=file.attrs["code"],
         states={name: declared.dataset(states, name, "f", shape)[()] for name in VARIABLES},
         state_status=[StateStatus(text) for text in texts("status")],
         flags=[frozenset(map(Flag, text.split())) for text in texts("flags")],
@@ -282,16 +263,37 @@ def code_digest() -> str:
 
 
 def _write_parameters(group: Any, case: Case) -> None:
-    """One scalar (or list) dataset per number of the case, with its unit."""
-    values = json.loads(case.canonical())
-    held, stops = PATH_UNITS[values["path"]["kind"]]
-    units = UNITS | {"path/held": held, "path/stops": stops, "fields_at": stops}
+    """One scalar (or list) dataset per value of the case; numbers with their unit."""
+    for name, (value, attributes) in parameters(case).items():
+        group.create_dataset(name, data=value).attrs.update(attributes)
 
-    def put(name: str, value: Any) -> None:
-        if isinstance(value, dict):
-            for key, entry in value.items():
-                put(f"{name}/{key}" if name else key, entry)
-        elif value is not None:
-            group.create_dataset(name, data=value).attrs["units"] = units.get(name, "1")
 
-    put("", values)
+def parameters(case: Case) -> dict[str, tuple[Any, dict[str, str]]]:
+    """All values of a case and their attributes, by their place in /parameters.
+
+    Units stand where the numbers are declared, in the metadata of the fields; where they go with
+    another value, in ``units`` of the part.
+    """
+    found: dict[str, tuple[Any, dict[str, str]]] = {}
+
+    def walk(part: Any, values: dict[str, Any], place: str) -> None:
+        declared = {entry.name: entry.metadata for entry in fields(part)}
+        units: dict[str, str] = getattr(part, "units", {})
+        for name, value in values.items():
+            if isinstance(value, dict):
+                walk(getattr(part, name), value, f"{place}{name}/")
+            elif _is_numeric(value):
+                unit = units.get(name) or declared[name]["unit"]
+                relative = {key: declared[name][key] for key in declared[name] if key != "unit"}
+                found[place + name] = value, {"units": unit, **relative}
+            elif value is not None:
+                found[place + name] = value, {}
+
+    walk(case, json.loads(case.canonical()), "")
+    return found
+
+
+def _is_numeric(value: Any) -> bool:
+    """Whether it is a number, or a list of them."""
+    first = value[0] if isinstance(value, list) else value
+    return isinstance(first, int | float) and not isinstance(first, bool)

@@ -16,6 +16,7 @@ class StateStatus(StrEnum):
     INVALID_STATE = "invalid_state"  # in equilibrium, but turned inside out somewhere
     NOT_REACHED = "not_reached"
     NO_ROOT = "no_root"  # there is no state of zero force where it was looked for
+    NOT_ASKED = "not_asked"  # of no record: in a table of all, where nobody asked for a state
 
 
 class Flag(StrEnum):
@@ -36,6 +37,7 @@ class CaseStatus(StrEnum):
     TIMEOUT = "timeout"
     SOLVER_ERROR = "solver_error"
     NOT_SOLVED = "not_solved"  # there is no record yet
+    NOT_ASKED = "not_asked"  # in a table of all, where nobody asked for a curve
 
 
 def state_status(kind: PathKind, states: dict[str, NDArray[np.float64]]) -> list[StateStatus]:

@@ -7,9 +7,11 @@ import time
 
 import h5py
 import numpy as np
+import pint
 import pytest
 
 from solver import record
+from solver.case import MESHED, MODELS
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.record import VARIABLES, NoRecord, Solution, unreached
@@ -100,17 +102,60 @@ def test_numbers_have_units(written):
                 parameters.update({name: item}) if isinstance(item, h5py.Dataset) else None
             )
         )
-        units = {name: item.attrs["units"] for name, item in parameters.items()}
+        units = {n: p.attrs["units"] for n, p in parameters.items() if "units" in p.attrs}
         assert units["muscle/inner_diameter"] == "mm"
         assert units["muscle/braid/layer_diameters"] == "mm"
         assert units["rubber/kappa"] == "MPa"
         assert units["thread/stiffness"] == "N"
         assert units["path/held"] == "MPa"
         assert units["path/stops"] == "1"
-        assert units["numerics/clamp/inner_stiffness"] == "N/mm3"
+        assert units["numerics/clamp/inner_stiffness"] == "N/mm^3"
         assert units["muscle/braid/threads"] == "1"
         assert parameters["muscle/inner_diameter"][()] == 20
         np.testing.assert_array_equal(parameters["path/stops"][()], [0, 0.1, 0.2])
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("kind", ["isobaric", "isometric", "isotonic"])
+def test_every_number_of_a_case_has_a_unit_that_can_be_read(make_case, model, kind):
+    path = LoadPath(kind=kind, held=0.1, stops=(0.1, 0.2))
+    case = make_case(model=model, path=path, fields_at=(0.1,) if model in MESHED else ())
+    units, numbers = pint.UnitRegistry(), set()
+    for name, (value, attributes) in record.parameters(case).items():
+        if isinstance(value, str | bool):
+            assert not attributes
+        else:
+            numbers.add(name)
+            units.Unit(attributes["units"])
+    assert {"path/held", "path/stops"} < numbers
+    assert ("fields_at" in numbers) == (model in MESHED)
+
+
+def test_what_is_a_multiple_says_of_what(make_case):
+    """Settings of the meshes scale with the muscle, so they have no length as their unit."""
+    path = LoadPath(kind="isobaric", held=0.1, stops=(0.1, 0.2))
+    found = {}
+    for model in MESHED:
+        found |= record.parameters(make_case(model=model, path=path))
+    relative = {name: a["relative_to"] for name, (_, a) in found.items() if "relative_to" in a}
+    assert relative == {
+        "numerics/meridian/cap_step": "wall thickness",
+        "numerics/meridian/body_step": "inner diameter",
+        "numerics/section/cap_step": "wall thickness",
+        "numerics/section/body_step": "inner diameter",
+        "numerics/cell/thread_size": "thread radius",
+        "numerics/cell/body_size": "wall thickness",
+        "numerics/clamp/ramp": "wall thickness",
+        "numerics/spread/radius": "thread diameter",
+    }
+    assert {found[name][1]["units"] for name in relative} == {"1"}
+
+
+def test_units_of_states_can_be_read():
+    units = pint.UnitRegistry()
+    for unit, _ in VARIABLES.values():
+        units.Unit(unit)
+    assert VARIABLES["volume"][0] == "mm^3"
 
 
 @pytest.mark.parametrize(
@@ -220,8 +265,8 @@ def test_another_layout_is_named(written):
 
 def test_a_record_of_an_older_version_is_refused_by_its_layout(written):
     content = written.read_bytes()
-    written.write_bytes(content.replace(b" layout 3 ", b" layout 2 ", 1))
-    with pytest.raises(NoRecord, match="is a muscle-case layout 2, of another version"):
+    written.write_bytes(content.replace(b" layout 4 ", b" layout 3 ", 1))
+    with pytest.raises(NoRecord, match="is a muscle-case layout 3, of another version"):
         record.read(written)
 
 

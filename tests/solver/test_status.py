@@ -16,7 +16,7 @@ GOOD = {
     "unstable_modes": 0.0,
     "stiffness": 5.0,
 }
-CONVERGED, UNSTABLE, INVALID, NOT_REACHED, _ = StateStatus
+CONVERGED, UNSTABLE, INVALID, NOT_REACHED = list(StateStatus)[:4]
 
 
 def status_of(kind: PathKind, **changes: float) -> StateStatus:
@@ -86,6 +86,7 @@ def test_the_vocabulary():
         "invalid_state",
         "not_reached",
         "no_root",
+        "not_asked",
     ]
     assert [f.value for f in Flag] == ["overstrained", "smoothed"]
     assert [s.value for s in CaseStatus] == [
@@ -97,4 +98,5 @@ def test_the_vocabulary():
         "timeout",
         "solver_error",
         "not_solved",
+        "not_asked",
     ]
