@@ -13,6 +13,7 @@ from solver.load_path import LoadPath
 from workflow.study import figure_needs, units
 from workflow.study.errors import StudyError, choices, shown
 from workflow.study.schema import (
+    FORCE_MAPS,
     HELD_KEY,
     QUANTITIES,
     SWEPT_KEY,
@@ -136,6 +137,10 @@ def _forces(
     # By name, and late: what is looked at before anything runs is no source of what runs.
     bench = importlib.import_module("workflow.data.bench")
     place = (*keys, "reference")
+    if entry.reference is None:
+        allowed = f"{', '.join(FORCE_MAPS)} or a .csv file; {entry.muscle} has no map of its own"
+        yield source.refuse(place, None, allowed)
+        return
     try:
         found = bench.read(entry.reference, made.muscle.length)
     except StudyError as error:

@@ -251,7 +251,7 @@ class CalibrationEntry(Entry):
     """A fit of a muscle to measured forces."""
 
     muscle: Name
-    reference: str = "festo_musclesim"
+    reference: str | None = None  # else the first map of the muscle
     model: _one_of("membrane", "solid") = "membrane"
     fit: _some_of("thread_stiffness", "c10", "c01") = ("thread_stiffness",)
     bounds: BoundsEntry = BoundsEntry()

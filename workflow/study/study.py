@@ -137,16 +137,28 @@ def load(path: Path | str, findings: Findings | None = None) -> Study:
         memory=file.limits.memory,
         warnings=tuple(checks.unusual(source, file, muscles)),
     )
+    study = replace(study, calibration={n: _fit(study, n) for n in study.calibration})
     study = replace(
         study,
         scenes={n: s for n, s in file.scenes.items() if found.no_more(checks.scene(study, n))},
         calibration={
-            n: c for n, c in file.calibration.items() if found.no_more(checks.calibration(study, n))
+            n: c
+            for n, c in study.calibration.items()
+            if found.no_more(checks.calibration(study, n))
         },
     )
     if findings is None:
         found.say()
     return study
+
+
+def _fit(study: Study, name: str) -> CalibrationEntry:
+    """A calibration with its forces: where none are named, the first map of the muscle itself."""
+    entry = study.calibration[name]
+    made = study.muscles.get(entry.muscle)
+    if entry.reference is not None or made is None or not made.reference:
+        return entry
+    return entry.model_copy(update={"reference": made.reference[0]})
 
 
 def _rubber(source: Source, found: Findings, name: str, entry: MaterialEntry) -> MooneyRivlin:

@@ -67,6 +67,7 @@ def calibrate(study: Study, name: str) -> Calibration:
     """
     entry = study.calibration[name]
     muscle = study.muscles[entry.muscle]
+    assert entry.reference is not None  # the study has named one
     found = bench.read(entry.reference, muscle.muscle.length)
     with tempfile.TemporaryDirectory() as folder:
         trial = Trial(study, muscle, Path(folder))

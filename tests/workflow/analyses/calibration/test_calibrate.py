@@ -161,6 +161,19 @@ def test_what_cannot_be_calibrated_is_refused(study, calibration, said):
         study(f"calibration: {{mine: {calibration}}}")
 
 
+def test_a_muscle_is_fitted_to_its_own_map_unless_another_is_named(study):
+    """Never without a word to the map of another muscle."""
+    own = STUDY.replace("material: nbr\n", "material: nbr\n    reference: [martens2017]\n", 1)
+    left_out = "calibration: {mine: {muscle: one}}"
+    assert study(left_out, text=own).calibration["mine"].reference == "martens2017"
+    named = "calibration: {mine: {muscle: one, reference: festo_musclesim}}"
+    assert study(named, text=own).calibration["mine"].reference == "festo_musclesim"
+    with pytest.raises(StudyError) as refused:
+        study(f"{left_out}\n")
+    assert "study.yaml:21: calibration.mine.reference is missing" in str(refused.value)
+    assert "one has no map of its own" in str(refused.value)
+
+
 def test_a_pressure_without_forces_is_refused(study, tmp_path):
     (tmp_path / "forces.csv").write_text("pressure_MPa,contraction,force_N\n0.2,0,1\n0.2,0.1,1\n")
     with pytest.raises(StudyError, match=r"no force at 0\.3 MPa"):
