@@ -149,7 +149,10 @@ def said(file: str) -> tuple[set[str], set[str]]:
 
 @pytest.mark.parametrize("file", INCLUDES)
 def test_the_head_says_what_a_file_needs_and_defines(file):
-    assert said(file) == (needs_of(file), defined_by(file))
+    needs, defines = needs_of(file), defined_by(file)
+    lists = (" ".join(sorted(words)) or "nothing" for words in (needs, defines))
+    right = "// Needs:   {}\n// Defines: {}".format(*lists)
+    assert said(file) == (needs, defines), f"{file}: its head should end with\n{right}"
 
 
 def test_names_are_found():
