@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from geometry.muscle import Braid
 from solver.status import StateStatus
 from workflow.analyses.calibration.fit import Fitted, Parameter, fit
-from workflow.analyses.calibration.forward_model import Trial
+from workflow.analyses.calibration.forward_model import ForwardModel
 from workflow.data import bench, deviation
 from workflow.data.reference import CONTRACTIONS, ForceMap
 from workflow.study.errors import StudyError
@@ -70,18 +70,18 @@ def calibrate(study: Study, name: str) -> Calibration:
     assert entry.reference is not None  # the study has named one
     found = bench.read(entry.reference, muscle.muscle.length)
     with tempfile.TemporaryDirectory() as folder:
-        trial = Trial(study, muscle, Path(folder))
+        forward = ForwardModel(study, muscle, Path(folder))
         try:
-            fitted = fit(_parameters(entry, muscle), _residuals(name, entry, found, trial))
+            fitted = fit(_parameters(entry, muscle), _residuals(name, entry, found, forward))
         except ValueError as error:
             raise StudyError(f"calibration.{name}: {error}") from None
         result = Calibration(name, entry, fitted, pd.DataFrame(), pd.DataFrame())
-        states = _states(result, found, trial)
+        states = _states(result, found, forward)
     return Calibration(name, entry, fitted, _deviations(result, states), states)
 
 
 def _parameters(entry: CalibrationEntry, muscle: StudiedMuscle) -> list[Parameter]:
-    assert muscle.thread is not None  # config.py refuses a bare tube
+    assert muscle.thread is not None  # the check of a study refuses a bare tube
     start = {
         "thread_stiffness": muscle.thread.stiffness,
         "c10": muscle.rubber.c10,
@@ -93,7 +93,7 @@ def _parameters(entry: CalibrationEntry, muscle: StudiedMuscle) -> list[Paramete
 
 
 def _residuals(
-    name: str, entry: CalibrationEntry, found: ForceMap, trial: Trial
+    name: str, entry: CalibrationEntry, found: ForceMap, forward: ForwardModel
 ) -> Callable[[Mapping[str, float]], NDArray[np.float64]]:
     """Function of the values: forces minus those of the map, at the fitted pressures [N]."""
     wanted: dict[float, tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
@@ -109,7 +109,7 @@ def _residuals(
     def residuals(values: Mapping[str, float]) -> NDArray[np.float64]:
         parts = []
         for pressure, (stops, expected) in wanted.items():
-            force = trial.forces(values, entry.model, pressure, stops)
+            force = forward.forces(values, entry.model, pressure, stops)
             # a state that is not there is as wrong as the largest force
             parts.append(np.nan_to_num(force - expected, nan=float(np.max(np.abs(expected)))))
         return np.concatenate(parts)
@@ -117,7 +117,7 @@ def _residuals(
     return residuals
 
 
-def _states(result: Calibration, found: ForceMap, trial: Trial) -> pd.DataFrame:
+def _states(result: Calibration, found: ForceMap, forward: ForwardModel) -> pd.DataFrame:
     """Forces before and after at the states of the rule, and those of the map."""
     entry, frames = result.entry, []
     pressures = sorted({*entry.fit_pressure, *entry.report_pressure})
@@ -127,7 +127,7 @@ def _states(result: Calibration, found: ForceMap, trial: Trial) -> pd.DataFrame:
         ("after", result.values, CHECK),
     ):
         for pressure in pressures:
-            force = trial.forces(values, model, pressure, CONTRACTIONS)
+            force = forward.forces(values, model, pressure, CONTRACTIONS)
             status = np.where(np.isfinite(force), StateStatus.CONVERGED.value, "missing")
             axes = {"pressure": [pressure], "contraction": list(CONTRACTIONS)}
             rows = deviation.states(

@@ -1,4 +1,4 @@
-"""Forces of a muscle with trial values for its stiffnesses, computed at once."""
+"""Forces of a muscle with other values of its stiffnesses, computed at once."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -31,7 +31,7 @@ def changed(muscle: StudiedMuscle, values: Mapping[str, float]) -> StudiedMuscle
     )
 
 
-class Trial:
+class ForwardModel:
     """Isobaric forces by a model; each case is solved once, in a folder for scratch files."""
 
     def __init__(self, study: Study, muscle: StudiedMuscle, folder: Path) -> None:

@@ -9,7 +9,7 @@ from geometry.muscle import Braid
 from workflow.analyses.calibration import calibrate, snippet
 from workflow.analyses.calibration.calibrate import THREAD_MODULUS, thickest
 from workflow.analyses.calibration.fit import Fitted, Parameter
-from workflow.analyses.calibration.forward_model import Trial
+from workflow.analyses.calibration.forward_model import ForwardModel
 from workflow.data import bench
 from workflow.study.errors import StudyError
 from workflow.study.study import load
@@ -56,10 +56,10 @@ def forces_of(study, tmp_path):
 
     def make(values, error=0.0):
         given = study(calibration="")
-        trial = Trial(given, given.muscles["one"], tmp_path)
+        forward = ForwardModel(given, given.muscles["one"], tmp_path)
         lines = ["pressure_MPa,contraction,force_N"]
         for pressure in (0.3, 0.4):
-            forces = trial.forces(values, "membrane", pressure, STEPS)
+            forces = forward.forces(values, "membrane", pressure, STEPS)
             lines += [
                 f"{pressure},{e},{f + error * (-1) ** k}"
                 for k, (e, f) in enumerate(zip(STEPS, forces, strict=True))
