@@ -39,8 +39,8 @@ from workflow.data.records import Curve
 from workflow.data.reference import ForceMap
 from workflow.plan import mesh_error
 from workflow.plan.effect_costs import group as measured_effects
+from workflow.study.contents import StudiedMuscle
 from workflow.study.schema import HELD_KEY, SWEPT_KEY
-from workflow.study.study import StudiedMuscle
 
 LAYOUT = 2
 NAN = math.nan

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 
-from workflow.study.study import StudiedMuscle
+from workflow.study.contents import StudiedMuscle
 
 MEAN_DEVIATION = -0.099  # Fig. 4: mean of its finite elements from the manufacturer's map
 THRESHOLD, AT_CONTRACTION = 0.15, 0.1  # Fig. 6: MPa, at that contraction

@@ -18,8 +18,8 @@ from workflow.data import records
 from workflow.data.reference import ForceMap
 from workflow.plan import mesh_error
 from workflow.plan.plan import Plan
+from workflow.study.contents import StudiedMuscle
 from workflow.study.schema import Scene
-from workflow.study.study import StudiedMuscle
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,8 +6,8 @@ contraction has smaller forces than a curve from 0, so the same error in newtons
 
 from solver import geometric
 from workflow.plan.effect_costs import MeasuredEffects
+from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.schema import Scene
-from workflow.study.study import StudiedMuscle, Study
 
 EQ_1 = 2624.0  # N/MPa, of the muscles that were measured, at their initial length
 WALL = 2 * 20  # mm2, thickness times diameter of the wall of the normal condition

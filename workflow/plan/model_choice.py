@@ -21,8 +21,8 @@ from solver.refusal import UnsolvableCase
 from workflow.plan.effect_costs import MESHES, MeasuredEffect, MeasuredEffects, load
 from workflow.plan.force_scale import error_factor
 from workflow.plan.mesh_error import share_of
+from workflow.study.contents import Study, Variant
 from workflow.study.schema import QUANTITIES, Scene
-from workflow.study.study import Study, Variant
 
 TOLERANCE = 0.01  # share of the curve's largest value, where a scene names none
 SHORTEST = 20 / 300  # diameter / length of the muscles that were measured: caps act in proportion

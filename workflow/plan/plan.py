@@ -16,9 +16,10 @@ from geometry.muscle import Muscle
 from solver.case import MESHED, NETS, Case, digest
 from solver.load_path import LoadPath
 from workflow.plan import model_choice
+from workflow.study.contents import Study, Variant
 from workflow.study.errors import Findings
 from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
-from workflow.study.study import Study, Variant, load
+from workflow.study.study import load
 
 FIELDS = {"stress", "deformed_shape"}
 ZERO_FORCE = {"threshold_pressure", "free_contraction"}

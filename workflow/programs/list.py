@@ -8,7 +8,7 @@ from workflow.analyses import analysis
 from workflow.data import records
 from workflow.plan.plan import Plan
 from workflow.programs import add_study, plan_of
-from workflow.study.study import StudiedMuscle
+from workflow.study.contents import StudiedMuscle
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -4,13 +4,14 @@ import importlib
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from geometry.muscle import Braid, Muscle
 from geometry.refusal import Refusal
 from solver import geometric
 from solver.load_path import LoadPath
 from workflow.study import figure_needs, units
+from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError, choices, shown
 from workflow.study.schema import (
     FORCE_MAPS,
@@ -23,9 +24,6 @@ from workflow.study.schema import (
 )
 from workflow.study.source import Keys, Source
 
-if TYPE_CHECKING:
-    from workflow.study.study import StudiedMuscle, Study
-
 ONLY_ON = {"threshold_pressure": "isometric", "free_contraction": "isobaric"}  # quantity: path
 HIGHEST = 20.0  # MPa: no pressure of such a muscle
 MOST_CURVES = 10_000  # of a scene: more is a typing error in a grid
@@ -36,7 +34,7 @@ WEAK = 1.0  # stiffness of all threads along their length, as a share of the rub
 FEEBLE, HUGE = 1e-3, 10.0  # load as a share of Eq. (1)
 
 
-def scene(study: "Study", name: str) -> Iterator[StudyError]:
+def scene(study: Study, name: str) -> Iterator[StudyError]:
     """Names that exist, the factors that the path takes and no others, and their values."""
     source, asked, keys = study.source, study.scenes[name], ("scenes", name)
     for key in ("muscles", "variants"):
@@ -108,7 +106,7 @@ def _values(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
                 break
 
 
-def calibration(study: "Study", name: str) -> Iterator[StudyError]:
+def calibration(study: Study, name: str) -> Iterator[StudyError]:
     """A muscle with threads, bounds within which something can be fitted, and forces to fit to."""
     source, entry, keys = study.source, study.calibration[name], ("calibration", name)
     made, muscles = study.muscles.get(entry.muscle), source.names("muscles")
@@ -131,7 +129,7 @@ def calibration(study: "Study", name: str) -> Iterator[StudyError]:
 
 
 def _forces(
-    source: Source, keys: Keys, entry: CalibrationEntry, made: "StudiedMuscle"
+    source: Source, keys: Keys, entry: CalibrationEntry, made: StudiedMuscle
 ) -> Iterator[StudyError]:
     """A reference that is not there, or has no forces where they are asked for."""
     # By name, and late: what is looked at before anything runs is no source of what runs.
@@ -169,7 +167,7 @@ def _forces(
 
 
 def _fitted(
-    source: Source, keys: Keys, entry: CalibrationEntry, made: "StudiedMuscle"
+    source: Source, keys: Keys, entry: CalibrationEntry, made: StudiedMuscle
 ) -> Iterator[StudyError]:
     """Bounds up to which there is no rubber."""
     high = {key: getattr(entry.bounds, key)[1] for key in entry.fit if key in ("c10", "c01")}
@@ -204,9 +202,7 @@ def angle(braid: Braid) -> Iterator[str]:
         yield f"braid angles from {low:g} to {high:g} degrees; here {degrees:.3g}"
 
 
-def unusual(
-    source: Source, file: StudyFile, muscles: Mapping[str, "StudiedMuscle"]
-) -> Iterator[str]:
+def unusual(source: Source, file: StudyFile, muscles: Mapping[str, StudiedMuscle]) -> Iterator[str]:
     """Values that can be used but look as if something else was meant, each in a line."""
     for keys, value in _written(file):
         guess = units.guess(keys[-1], value)
@@ -237,7 +233,7 @@ def _written(file: StudyFile) -> Iterator[tuple[Keys, Any]]:
         yield ("limits", key), getattr(file.limits, key)
 
 
-def _unusual_braid(source: Source, name: str, made: "StudiedMuscle") -> Iterator[str]:
+def _unusual_braid(source: Source, name: str, made: StudiedMuscle) -> Iterator[str]:
     braid, thread, tube = made.muscle.braid, made.thread, made.muscle
     if braid is None or thread is None:
         return
@@ -253,7 +249,7 @@ def _unusual_braid(source: Source, name: str, made: "StudiedMuscle") -> Iterator
 
 
 def _unusual_load(
-    source: Source, keys: Keys, asked: Scene, known: list["StudiedMuscle"]
+    source: Source, keys: Keys, asked: Scene, known: list[StudiedMuscle]
 ) -> Iterator[str]:
     """Loads that are nothing, or far too much, for the muscles of a scene."""
     loads = [abs(load) for load in asked.load or () if load]

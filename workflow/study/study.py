@@ -5,7 +5,7 @@ here, and every muscle is built, so that what cannot be built is refused before 
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
@@ -17,13 +17,13 @@ from solver.effects import Effects
 from solver.material import MooneyRivlin, Thread
 from solver.numerics import KINDS, Numerics, Spread
 from workflow.study import checks, fit, units
+from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices, shown
 from workflow.study.limits import Limits
 from workflow.study.schema import (
     CalibrationEntry,
     MaterialEntry,
     MuscleEntry,
-    Scene,
     StudyFile,
     VariantEntry,
 )
@@ -42,40 +42,6 @@ NOT_MEASURED = (*OF_THREAD, "reference")
 # Values beside which another one can be judged alone
 ANY_SHAPE = {"inner_diameter": 1, "wall_thickness": 1, "length": 1, "cap_length": 0, "braid": None}
 ANY_RUBBER = {"c10": 1e-12, "c01": 0, "kappa": 1e12}
-
-
-@dataclass(frozen=True, kw_only=True)
-class StudiedMuscle:
-    """A muscle of the study with its materials."""
-
-    muscle: Muscle
-    material: str
-    rubber: MooneyRivlin
-    thread: Thread | None
-    limits: Limits = field(default_factory=Limits)  # of its materials
-    reference: tuple[str, ...] = ()  # names of the force maps that are of this muscle
-
-
-@dataclass(frozen=True, kw_only=True)
-class Variant:
-    """A set of effects and numerics."""
-
-    effects: Effects
-    numerics: Numerics
-
-
-@dataclass(frozen=True, kw_only=True)
-class Study:
-    """What a study file says, by name."""
-
-    source: Source
-    muscles: dict[str, StudiedMuscle]
-    variants: dict[str, Variant]
-    scenes: dict[str, Scene]
-    calibration: dict[str, CalibrationEntry]
-    wall_time: int  # s, of one case
-    memory: int  # MB, of one case
-    warnings: tuple[str, ...] = ()  # what may be meant otherwise
 
 
 def study_file(given: Mapping[str, object]) -> str:

@@ -45,7 +45,7 @@ from workflow.analyses.analysis import Solved, StudyCase
 from workflow.plan.effect_costs import MESHES
 from workflow.plan.mesh_error import PART
 from workflow.plan.plan import plan
-from workflow.study.study import Study
+from workflow.study.contents import Study
 
 if TYPE_CHECKING:
     import pandas as pd

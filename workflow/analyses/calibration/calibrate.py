@@ -25,9 +25,9 @@ from workflow.analyses.calibration.fit import Fitted, Parameter, fit
 from workflow.analyses.calibration.forward_model import ForwardModel
 from workflow.data import bench, deviation
 from workflow.data.reference import CONTRACTIONS, ForceMap
+from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
 from workflow.study.schema import CalibrationEntry
-from workflow.study.study import StudiedMuscle, Study
 
 UNITS = {"thread_stiffness": "N", "c10": "MPa", "c01": "MPa"}
 THREAD_MODULUS = 2100.0  # MPa, section 2.2 of the paper

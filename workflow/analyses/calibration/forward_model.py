@@ -14,8 +14,8 @@ from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
 from solver.solve import solve
 from solver.status import StateStatus
+from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
-from workflow.study.study import StudiedMuscle, Study
 
 DATA = ("solver/edp/*",)  # whichever model a calibration names
 

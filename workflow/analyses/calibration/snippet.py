@@ -1,7 +1,7 @@
 """A calibrated muscle as text to paste into a study file."""
 
 from workflow.analyses.calibration.calibrate import Calibration
-from workflow.study.study import Study
+from workflow.study.contents import Study
 
 
 def text(result: Calibration, study: Study) -> str:

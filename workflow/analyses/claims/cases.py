@@ -24,9 +24,9 @@ from workflow.analyses.threads import cases as threads
 from workflow.data import dataset, paper
 from workflow.data.records import Curve
 from workflow.plan.plan import Place, plan
+from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
 from workflow.study.schema import Scene
-from workflow.study.study import StudiedMuscle, Study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -18,7 +18,7 @@ from solver.numerics import Numerics
 from workflow.analyses.analysis import Solved, StudyCase
 from workflow.analyses.effects.table import table
 from workflow.plan.effect_costs import MESHES
-from workflow.study.study import Study
+from workflow.study.contents import Study
 
 __all__ = ["cases", "draw", "table"]
 

@@ -25,7 +25,7 @@ from solver.material import MooneyRivlin, Thread
 from solver.numerics import Numerics
 from workflow.analyses.analysis import Solved, StudyCase
 from workflow.analyses.robustness.table import notes, table
-from workflow.study.study import Study
+from workflow.study.contents import Study
 
 MUSCLE, SILICONE = "dmsp20", "dmsp20_silicone"  # of the study file
 CONTRACTIONS = tuple(round(-0.05 + 0.01 * k, 2) for k in range(31))

@@ -23,8 +23,8 @@ from solver.material import Thread
 from solver.record import Solution
 from solver.status import StateStatus
 from workflow.analyses.analysis import Solved, StudyCase
+from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
-from workflow.study.study import StudiedMuscle, Study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

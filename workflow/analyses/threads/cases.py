@@ -26,7 +26,7 @@ from solver.load_path import LoadPath, PathKind
 from solver.numerics import Numerics
 from workflow.analyses.analysis import Solved, StudyCase
 from workflow.analyses.threads import local
-from workflow.study.study import Study
+from workflow.study.contents import Study
 
 MUSCLES = {"NBR": "dmsp20", "silicone": "dmsp20_silicone"}  # of the study file
 CONTRACTIONS = (0.0, 0.05, 0.1, 0.15, 0.2)

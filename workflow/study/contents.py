@@ -1,0 +1,45 @@
+"""What a study file says, once it is read: muscles, variants, scenes and calibrations by name."""
+
+from dataclasses import dataclass, field
+
+from geometry.muscle import Muscle
+from solver.effects import Effects
+from solver.material import MooneyRivlin, Thread
+from solver.numerics import Numerics
+from workflow.study.limits import Limits
+from workflow.study.schema import CalibrationEntry, Scene
+from workflow.study.source import Source
+
+
+@dataclass(frozen=True, kw_only=True)
+class StudiedMuscle:
+    """A muscle of the study with its materials."""
+
+    muscle: Muscle
+    material: str
+    rubber: MooneyRivlin
+    thread: Thread | None
+    limits: Limits = field(default_factory=Limits)  # of its materials
+    reference: tuple[str, ...] = ()  # names of the force maps that are of this muscle
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variant:
+    """A set of effects and numerics."""
+
+    effects: Effects
+    numerics: Numerics
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """What a study file says, by name."""
+
+    source: Source
+    muscles: dict[str, StudiedMuscle]
+    variants: dict[str, Variant]
+    scenes: dict[str, Scene]
+    calibration: dict[str, CalibrationEntry]
+    wall_time: int  # s, of one case
+    memory: int  # MB, of one case
+    warnings: tuple[str, ...] = ()  # what may be meant otherwise
