@@ -5,7 +5,8 @@ rise at the zero that is wanted: F over pressure (the threshold pressure, dF/dp 
 contraction (the free contraction, dF/dl > 0). The zero lies in the lowest interval between states
 of the curve in which g rises from below to above it; a state whose force is 1e-6 of the largest is
 one. Where g has one sign at both ends of an interval and its slopes say that it turns towards zero
-between them, its extremum is looked at. What the stops do not enclose is looked for beyond
+between them, its extremum is looked at; where all that finds none, the states of the curve are
+joined by small steps. What the stops do not enclose is looked for beyond
 them: pressures from none to ten times what the rubber alone can bear at its length (or the highest
 stop), contractions within CONTRACTION_LIMITS, as far as there are states.
 
@@ -18,6 +19,7 @@ so in the model, only the smoothing of the slack law does. Then the answer is no
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -126,6 +128,11 @@ class Finder(Generic[Position]):
             found = next(slack, None)
         for lower, upper in zip(self.points, self.points[1:], strict=False):
             found = found or self._between(lower, upper)
+        if found is None and self._over_pressure and bottom.g <= 0 <= bottom.slope:
+            found = self._beyond(bottom, self.search.low)
+        every = sorted((p for p in self.known if p.x <= top.x), key=lambda point: point.x)
+        for lower, upper in pairwise(every):
+            found = found or self._throughout(lower, upper)
         if found is None and top.g < 0:
             found = self._beyond(top, self.search.high)
         return found
@@ -194,6 +201,23 @@ class Finder(Generic[Position]):
             return self._enclose(lower, upper)
         except _Ended:
             return None
+
+    def _throughout(self, lower: Point[Position], upper: Point[Position]) -> Point[Position] | None:
+        """By steps: where force waves, its slopes at the ends say nothing."""
+        width = upper.x - lower.x
+        steps = math.ceil(width / self.search.step / (2.5 if self._over_pressure else 0.5))
+        at = lower
+        for k in range(1, steps):
+            x = lower.x + k * width / steps
+            try:
+                there = self._go(at, x)
+            except _Ended:
+                return None
+            found = self._between(at, there)
+            if found is not None or not self._is_at(there, x):
+                return found
+            at = there
+        return self._between(at, upper)
 
     def _enclose(self, lower: Point[Position], upper: Point[Position]) -> Point[Position] | None:
         """By false position (Illinois), from the side on which the muscle pulls."""

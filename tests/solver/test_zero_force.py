@@ -61,6 +61,17 @@ def test_of_several_the_lowest_that_rises(points):
     assert found.x == pytest.approx(0.1, abs=1e-9)
 
 
+def test_a_wave_between_two_points_is_not_overlooked():
+    """Falling at both of them, with three extrema between."""
+    curve = np.polynomial.Polynomial.fit(
+        [0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5], [-0.4, -0.6, 0.0, 0.5, 0.0, -0.4, -0.8], 6
+    )
+    found, _ = found_on(curve, curve.deriv(), (0.01, 0.45))
+    assert curve.deriv()(0.01) < 0
+    assert curve.deriv()(0.45) < 0
+    assert found.x == pytest.approx(0.1, abs=1e-9)
+
+
 def test_a_zero_that_falls_is_none():
     found, finder = found_on(lambda x: 0.3 - x, lambda x: -1.0, (0.1, 0.5))
     assert finder.range == (0.0, 0.5)
