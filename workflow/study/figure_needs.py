@@ -1,5 +1,6 @@
 """Which scenes are figures, and what a figure must be given to be drawn."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,7 +38,7 @@ NEEDS = {  # of the figures of the paper
 
 def drawn(scene: str) -> bool:
     """Whether a scene is drawn as the figure of its name; any other is in the dataset only."""
-    return scene.startswith("fig") and (FOLDER / f"{scene}.py").exists()
+    return re.match(r"fig\d", scene) is not None and (FOLDER / f"{scene}.py").exists()
 
 
 def lacking(name: str, scene: Scene) -> Iterator[tuple[str, object, str]]:

@@ -305,17 +305,16 @@ class _Muscles:
         diameters = self._layer_diameters(name, values)
         common = {"threads": values["threads"], "layer_diameters": diameters}
         renamed = {"layer_diameters": "layer_depths", "lead": given[0]}
+        build: Callable[..., Braid] = Braid
+        last = {given[0]: values[given[0]]}
         if given == ["angle"]:
-            values = common | {"angle": values["angle"]}
-            return self._checked(name, Braid.from_angle, values, {}, renamed)
-        if given == ["lead"]:
-            lead = values["lead"]
-        else:
-            braid = self._built[values["angle_of"]].muscle.braid
-            if braid is None:
+            build = Braid.from_angle
+        elif given == ["angle_of"]:
+            other = self._built[values["angle_of"]].muscle.braid
+            if other is None:
                 raise self._refuse(name, "angle_of", values["angle_of"], "a muscle with a braid")
-            lead = braid.lead * sum(diameters) / sum(braid.layer_diameters)
-        braid = self._checked(name, Braid, common | {"lead": lead}, {}, renamed)
+            last = {"lead": other.lead * sum(diameters) / sum(other.layer_diameters)}
+        braid = self._checked(name, build, common | last, {}, renamed)
         for allowed in checks.angle(braid):
             raise self._refuse(name, given[0], values[given[0]], allowed)
         return braid
