@@ -35,6 +35,7 @@ CONTRACTION_STEP = 0.05
 PRESSURES = 10.0  # times the limit pressure of the rubber: the highest that is tried
 TRIALS = 100  # states at most
 SAME = 1e-9  # difference of x, as a share of its size
+ROUNDING = 1e-12  # the same of what is as good as zero
 Position = TypeVar("Position")
 
 
@@ -254,7 +255,10 @@ def judge(
     status: StateStatus,
     searched: tuple[float, float] | None,
 ) -> tuple[StateStatus, str]:
-    """Status and note of the state of zero force; ``searched`` says between which ends."""
+    """Status and note of the state of zero force; ``searched`` says between which ends.
+
+    A control that is zero but for rounding becomes zero.
+    """
     force = states["force"]
     if np.isnan(force[-1]):
         if searched is None:
@@ -264,7 +268,10 @@ def judge(
         low, high = ((f"{100 * x:.6g} %" if contraction else f"{x:.6g}") for x in ends)
         unit = "contraction" if contraction else "MPa"
         return StateStatus.NO_ROOT, f"no change of sign from {low} to {high} {unit}"
-    if abs(force[-1]) > 10 * SHARE * np.nanmax(np.abs(force)):
+    for name, size in (("pressure", limit_pressure(case)), ("contraction", 1.0)):
+        if abs(states[name][-1]) < ROUNDING * size:  # a pressure of -1e-17 MPa is none
+            states[name][-1] = 0.0
+    if states["pressure"][-1] == 0 and abs(force[-1]) > 10 * SHARE * np.nanmax(np.abs(force)):
         return status, (
             f"its force of {force[-1]:.3g} N is what the smoothing of the slack law adds to a "
             "muscle without pressure"
