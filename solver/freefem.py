@@ -1,4 +1,4 @@
-"""Run a FreeFEM program of solver/edp."""
+"""Run a FreeFEM program."""
 
 import errno
 import math
@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from geometry.attempt import OWN_SIGNALS
 from solver import files
 from solver.process import Family
 
-EDP = Path(__file__).parent / "edp"
+PATH = Path(__file__).parent / "path"  # solution control, which every program includes
 DEBIAN_PLUGINS = Path("/usr/lib/freefem++")  # where Debian puts them; its program looks elsewhere
 CHECK_ANSWER, CHECK_TIME = "FreeFEM is ready: 2", 20.0  # s
 LONGEST = 200  # characters of a line that is quoted
@@ -68,7 +69,7 @@ class Usage:
 
     Attributes
     ----------
-    parts : what the program says of itself (solver/edp/cost.idp): CPU seconds by purpose,
+    parts : what the program says of itself (solver/path/cost.idp): CPU seconds by purpose,
         iterations, factorisations, unknowns; empty if it does not
     """
 
@@ -115,7 +116,7 @@ def check() -> None:
     FreeFemError
         If FreeFEM or a plugin is missing or does not work, with what to do in a few lines.
     """
-    found = command("check.edp", {})
+    found = command(PATH / "check.edp", {})
     try:
         done = subprocess.run(
             found,
@@ -145,23 +146,23 @@ def check() -> None:
     raise FreeFemError(f"{found[0]} does not work. {how}: {said or 'it says nothing'}")
 
 
-def command(program: str, flags: dict[str, str | float]) -> list[str]:
+def command(program: Path, flags: dict[str, str | float]) -> list[str]:
     """Argument list: no graphics, quiet, the program, then its own flags without losing a digit."""
-    arguments = [executable(), "-nw", "-v", "0", str(EDP / program)]
+    arguments = [executable(), "-nw", "-v", "0", str(program)]
     for name, value in flags.items():
         arguments += [f"-{name}", value if isinstance(value, str) else repr(value)]
     return arguments
 
 
-def environment() -> dict[str, str]:
-    """The caller's environment, with our includes searched first and one thread.
+def environment(includes: Sequence[Path] = (PATH,)) -> dict[str, str]:
+    """The caller's environment, with our folders of includes searched first and one thread.
 
     FreeFEM looks for an include in the working directory and in FF_INCLUDEPATH, not beside the
     program that includes it.
     """
-    includes = [str(EDP), *filter(None, [os.environ.get("FF_INCLUDEPATH")])]
+    folders = [*map(str, includes), *filter(None, [os.environ.get("FF_INCLUDEPATH")])]
     own = {
-        "FF_INCLUDEPATH": ";;".join(includes),
+        "FF_INCLUDEPATH": ";;".join(folders),
         "OMP_NUM_THREADS": "1",
         "OPENBLAS_NUM_THREADS": "1",
     }
@@ -171,9 +172,16 @@ def environment() -> dict[str, str]:
 
 
 def run(
-    program: str, flags: dict[str, str | float], workdir: Path, log: Path, limits: Limits
+    program: Path,
+    flags: dict[str, str | float],
+    workdir: Path,
+    log: Path,
+    limits: Limits,
+    includes: Sequence[Path] = (PATH,),
 ) -> Usage:
-    """Run a program of solver/edp in ``workdir`` to its end; the end of its output goes to ``log``.
+    """Run a program in ``workdir`` to its end; the end of its output goes to ``log``.
+
+    ``includes`` are the folders in which its includes are looked for.
 
     Raises
     ------
@@ -191,7 +199,11 @@ def run(
     _check_memory(limits)
     with log.open("w") as stream, Family() as family:
         process = family.start(
-            command(program, flags), workdir, environment(), stream, lambda: _limit(limits)
+            command(program, flags),
+            workdir,
+            environment(includes),
+            stream,
+            lambda: _limit(limits),
         )
         try:
             status = process.wait(limits.wall_time)

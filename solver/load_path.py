@@ -15,7 +15,7 @@ RAMP_STEPS = 4  # a load is brought from zero to its value in so many waypoints
 
 
 class Control(IntEnum):
-    """What can be prescribed; the numbers are those of solver/edp/control.idp."""
+    """What can be prescribed; the numbers are those of solver/path/control.idp."""
 
     CONTRACTION = 0  # 1 - l/L
     PRESSURE = 1  # MPa

@@ -20,7 +20,7 @@ SLACK_DIAMETER = 20.0  # slackening were chosen
 
 @dataclass(frozen=True, kw_only=True)
 class Newton:
-    """Solution control of solver/edp/control.idp.
+    """Solution control of solver/path/control.idp.
 
     Residuals are judged relative to the largest nodal force of any single term.
     """

@@ -64,7 +64,7 @@ VARIABLES = {
     "rubber_stretch_max": ("1", "largest principal stretch of the rubber at a quadrature point"),
     "min_det_f": ("1", "smallest det F at a quadrature point"),
     "min_det_f_nodes": ("1", "smallest det F at a corner of an element"),
-    "margin": ("1", "smallest of what must stay positive (solver/edp/state.idp)"),
+    "margin": ("1", "smallest of what must stay positive (solver/path/state.idp)"),
     "energy": ("N*mm", "strain energy of the muscle"),
     "stiffness": ("N/mm", "dF/dl at fixed pressure"),
     "force_by_pressure": ("N/MPa", "dF/dp at fixed length"),

@@ -1,8 +1,8 @@
 """The force that the smoothing of the slack law adds, and what is said where it is much.
 
 Threads slacken over a width of strain instead of at a kink (solver/numerics.py, Slack). What that
-adds to the force of a state is recorded (solver/edp/smoothing.idp, solver/cylinder.py); here it is
-judged, as a share of what the curve bears.
+adds to the force of a state is recorded (solver/path/smoothing.idp; the cylinder does it itself).
+Here it is judged, as a share of what the curve bears.
 """
 
 import math

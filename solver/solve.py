@@ -24,6 +24,7 @@ from solver.smoothing import marked
 from solver.status import CaseStatus, StateStatus, state_status
 from solver.zero_force import Search, limit_pressure
 
+SOLVER = Path(__file__).parent
 RUBBISH = (ValueError, TypeError, LookupError, ArithmeticError, csv.Error)  # unreadable output
 LARGEST_TEXT, LARGEST_ROW = 2**14, 2**12  # bytes
 LARGEST_FIELDS = 400  # bytes per byte of the mesh
@@ -191,8 +192,7 @@ def _follow(
         (work / "waypoints.txt").write_text(waypoint_text(case, way))
         given = flags(case, mesh.resolve())
         try:
-            program = f"{case.model}.edp"
-            usage = _run_until(until, limits, program, given, work, log.resolve())
+            usage = _run_until(until, limits, case.model, given, work, log.resolve())
         except freefem.OutOfTime:
             status, reason = CaseStatus.TIMEOUT, f"stopped after {limits.wall_time:g} s, the limit"
         except freefem.Outside:
@@ -222,7 +222,7 @@ def _follow(
 def _run_until(
     until: float,
     limits: freefem.Limits,
-    program: str,
+    model: str,
     given: dict[str, str | float],
     work: Path,
     log: Path,
@@ -231,7 +231,7 @@ def _run_until(
 
     def run() -> freefem.Usage:
         left = replace(limits, wall_time=max(until - time.monotonic(), 0))
-        return freefem.run(program, given, work, log, left)
+        return freefem.run(program_of(model), given, work, log, left, includes(model))
 
     try:
         return run()
@@ -264,6 +264,17 @@ def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solut
     )
 
 
+def program_of(model: str) -> Path:
+    """The FreeFEM program of a model."""
+    return SOLVER / "models" / model / f"{model}.edp"
+
+
+def includes(model: str) -> list[Path]:
+    """Folders in which the program of a model finds its includes."""
+    shared = ("models", "path", "threads", "rubber/mooney_rivlin")
+    return [SOLVER / "models" / model, *(SOLVER / name for name in shared)]
+
+
 def composition(case: Case) -> str:
     """The includes of a program: one per active effect."""
     threads = case.effects.threads if case.muscle.braid else "none"
@@ -279,7 +290,7 @@ def composition(case: Case) -> str:
 
 
 def waypoint_text(case: Case, way: list[Waypoint]) -> str:
-    """The file that solver/edp/output.idp reads."""
+    """The file that solver/path/output.idp reads."""
     wanted_fields = {case.path.stops.index(stop) for stop in case.fields_at}
     lines = [str(len(way)), "0 0 0 0 0 0 0"]
     if case.path.zero_force:
@@ -298,7 +309,7 @@ def waypoint_text(case: Case, way: list[Waypoint]) -> str:
 
 
 def flags(case: Case, mesh: Path) -> dict[str, str | float]:
-    """Flags of solver/edp/parameters.idp and of the includes that are composed in."""
+    """Flags of solver/path/parameters.idp and of the includes that are composed in."""
     muscle, newton = case.muscle, case.numerics.newton
     values: dict[str, str | float] = {
         "mesh": str(mesh),
@@ -347,7 +358,7 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
 
 
 def _cell_flags(case: Case) -> dict[str, str | float]:
-    """Flags of solver/edp/cell_parameters.idp."""
+    """Flags of solver/models/cell/cell_parameters.idp."""
     box = Box(case.muscle)
     return {
         "kappa": case.rubber.kappa,
@@ -395,13 +406,13 @@ def _collect(
 def _direct(model: str) -> Callable[[Case], Solution] | None:
     """The solver of a model that needs no FreeFEM; imported only if it is the one."""
     if model in NETS:
-        from solver import geometric
+        from solver.models.geometric import equation
 
-        return geometric.solve
+        return equation.solve
     if model == "cylinder":
-        from solver import cylinder
+        from solver.models.cylinder import curve
 
-        return cylinder.solve
+        return curve.solve
     return None
 
 
@@ -449,7 +460,7 @@ def _fields(model: str, text: bytes) -> dict[str, NDArray[np.float64]]:
 
 
 def _searched(path: Path) -> tuple[float, float] | None:
-    """The ends in zero.txt of solver/edp/output.idp."""
+    """The ends in zero.txt of solver/path/output.idp."""
     text = files.read(path, LARGEST_TEXT)
     if text is None:
         return None

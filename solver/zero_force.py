@@ -13,7 +13,7 @@ stop), contractions within CONTRACTION_LIMITS, as far as there are states.
 Without pressure a muscle rests at its own length, and a shortened one does not pull: if it does
 so in the model, only the smoothing of the slack law does. Then the answer is none, and says so.
 
-``find`` is for models in Python; solver/edp/zero.idp is its twin.
+``find`` is for models in Python; solver/path/zero.idp is its twin.
 """
 
 import math

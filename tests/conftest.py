@@ -17,7 +17,7 @@ from solver.case import Case, digest
 from solver.load_path import LoadPath, Waypoint
 from solver.material import MooneyRivlin, Thread
 from solver.record import Solution
-from solver.solve import composition, flags, solve, waypoint_text
+from solver.solve import composition, flags, includes, program_of, solve, waypoint_text
 
 LIMITS = freefem.Limits(wall_time=300, memory=4000)  # a busy machine takes its time
 Rows = list[dict[str, float]]
@@ -130,11 +130,12 @@ def run_program(
         work = tmp_path_factory.mktemp(case.key)
         (work / "composition.idp").write_text(composition(case))
         (work / "waypoints.txt").write_text(waypoint_text(case, list(way)))
-        name = f"{case.model}.edp" if program is None else str(program)
+        program = program or program_of(case.model)
         mesh = mesh_of(case)
         assert mesh is not None
         try:
-            freefem.run(name, flags(case, mesh) | more, work, work / "log", LIMITS)
+            given = flags(case, mesh) | more
+            freefem.run(program, given, work, work / "log", LIMITS, includes(case.model))
         except freefem.FreeFemError as error:
             raise AssertionError(f"{error}\n{freefem.tail(work / 'log')}") from error
         return work

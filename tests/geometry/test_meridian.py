@@ -105,7 +105,7 @@ def test_freefem_reads_it(tmp_path):
         text = text.replace(word, str(label.value))
     (tmp_path / "read.edp").write_text(text)
     limits = freefem.Limits(wall_time=30, memory=2000)
-    freefem.run(str(tmp_path / "read.edp"), {}, tmp_path, tmp_path / "log", limits)
+    freefem.run(tmp_path / "read.edp", {}, tmp_path, tmp_path / "log", limits)
     rows = [line.split() for line in (tmp_path / "log").read_text().splitlines() if line.strip()]
     points = np.array([row for row in rows if row[0][0].isdigit()], dtype=float)
     heights = mesh.half_length_stations(muscle)

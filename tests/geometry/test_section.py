@@ -181,7 +181,7 @@ def test_freefem_reads_it(mesh, muscle, end, tmp_path):
     )
     log = tmp_path / "log"
     limits = freefem.Limits(wall_time=30, memory=2000)
-    freefem.run(str(tmp_path / "read.edp"), {}, tmp_path, log, limits)
+    freefem.run(tmp_path / "read.edp", {}, tmp_path, log, limits)
     area, *lengths = (float(line) for line in log.read_text().split())
     assert area == pytest.approx(section.area(muscle, end), rel=1e-12)
     expected = lines_of(mesh, muscle, end)

@@ -2,16 +2,19 @@
 
 import csv
 import re
+from pathlib import Path
 
 import pytest
 
 from geometry.labels import Boundary
+from solver import solve
 from solver.effects import Effects, End, ThreadLaw
-from solver.freefem import EDP
 from solver.load_path import Control, Waypoint
 from solver.record import VARIABLES
-from solver.solve import composition, flags
+from solver.solve import composition, flags, includes
 
+SOLVER = Path(solve.__file__).parent
+FILES = {path.name: path for path in SOLVER.rglob("*.?dp")}
 REQUIRED = re.compile(r'^[^/\n]*require(?:Real|Int|String)\("-(\w+)"\)', re.M)
 INCLUDE = re.compile(r'^\s*include\s+"([\w.]+)"', re.M)
 MESHED = ("membrane", "solid", "cell")
@@ -19,7 +22,7 @@ MESHED = ("membrane", "solid", "cell")
 
 def sources(name: str, composed: str) -> str:
     """A program with all it includes; ``composed`` stands for composition.idp."""
-    text = composed if name == "composition.idp" else (EDP / name).read_text()
+    text = composed if name == "composition.idp" else FILES[name].read_text()
     return text + "".join(sources(included, composed) for included in INCLUDE.findall(text))
 
 
@@ -32,6 +35,11 @@ EFFECTS = [
     pytest.param("membrane", Effects(wall="one_radius"), id="membrane at one radius"),
     pytest.param("solid", Effects(volume="incompressible"), id="solid that keeps its volume"),
 ]
+
+
+def test_no_two_files_have_one_name():
+    """Includes are found by their name alone, in several folders."""
+    assert len(FILES) == len(list(SOLVER.rglob("*.?dp")))
 
 
 @pytest.mark.parametrize(("model", "effects"), EFFECTS)
@@ -54,13 +62,13 @@ def test_every_effect_has_its_include(make_case, model, effects):
     expected += solid if model == "solid" else []
     expected += [f"cell_layers_{effects.layers}.idp"] if model == "cell" else []
     assert files == expected
-    assert all((EDP / file).exists() for file in files)
+    assert all(any((folder / file).exists() for folder in includes(model)) for file in files)
 
 
 def test_integers_and_decimals_keep_their_kind(make_case, tmp_path):
     """FreeFEM reads them by atoi and atof; a count must not arrive as 2.0."""
     given = flags(make_case(model="solid"), tmp_path)
-    text = (EDP / "parameters.idp").read_text()
+    text = FILES["parameters.idp"].read_text()
     counts = set(re.findall(r'requireInt\("-(\w+)"\)', text))
     words = set(re.findall(r'requireString\("-(\w+)"\)', text))
     assert counts <= {name for name, value in given.items() if isinstance(value, int)}
@@ -68,19 +76,19 @@ def test_integers_and_decimals_keep_their_kind(make_case, tmp_path):
 
 
 def test_labels():
-    found = dict(re.findall(r"^int label(\w+) = (\d+);", (EDP / "labels.idp").read_text(), re.M))
+    found = dict(re.findall(r"^int label(\w+) = (\d+);", FILES["labels.idp"].read_text(), re.M))
     assert found == {b.name.title().replace("_", ""): str(int(b)) for b in Boundary}
 
 
 def test_every_label_in_use_is_defined():
-    text = "".join(path.read_text() for path in EDP.iterdir())
+    text = "".join(path.read_text() for path in FILES.values())
     used = set(re.findall(r"\blabel[A-Z]\w*", text))
-    defined = set(re.findall(r"int (label\w+) = \d+;", (EDP / "labels.idp").read_text()))
+    defined = set(re.findall(r"int (label\w+) = \d+;", FILES["labels.idp"].read_text()))
     assert used == defined
 
 
 def test_controls():
-    text = (EDP / "newton.idp").read_text()
+    text = FILES["newton.idp"].read_text()
     found = {name: int(number) for name, number in re.findall(r"\bby([A-Z]\w+) = (\d)", text)}
     assert {control.name.title(): int(control) for control in Control}.items() <= found.items()
     assert len(set(found.values())) == len(found), "two controls have one number"

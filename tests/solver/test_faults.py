@@ -263,7 +263,7 @@ def test_freefem_ends_with_the_program_that_runs_it(case, mesh_of, tmp_path):
 def test_a_signal_from_outside_is_told_apart(tmp_path, monkeypatch):
     monkeypatch.setattr(freefem, "command", lambda *_: ["sh", "-c", "kill -TERM $$"])
     with pytest.raises(Interrupted, match="SIGTERM"):
-        freefem.run("any.edp", {}, tmp_path, tmp_path / "log", LIMITS)
+        freefem.run(Path("any.edp"), {}, tmp_path, tmp_path / "log", LIMITS)
 
 
 def test_a_full_disk_is_no_record(case, tmp_path, monkeypatch):

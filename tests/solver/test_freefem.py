@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from solver import freefem
-from solver.freefem import EDP, FreeFemError, Limits, OutOfTime
+from solver.freefem import PATH, FreeFemError, Limits, OutOfTime
 
 LIMITS = Limits(wall_time=30, memory=2000)
 
@@ -21,7 +21,7 @@ def run(tmp_path):
     def run_text(text: str, limits: Limits = LIMITS, **flags):
         program = tmp_path / "program.edp"
         program.write_text(text)
-        return freefem.run(str(program), flags, tmp_path, tmp_path / "log", limits)
+        return freefem.run(program, flags, tmp_path, tmp_path / "log", limits)
 
     return run_text
 
@@ -148,15 +148,15 @@ def test_environment_searches_our_includes_first(monkeypatch):
     monkeypatch.setenv("FF_INCLUDEPATH", "/theirs")
     monkeypatch.setenv("FF_LOADPATH", "/their/plugins")
     found = freefem.environment()
-    assert found["FF_INCLUDEPATH"] == f"{EDP};;/theirs"
+    assert found["FF_INCLUDEPATH"] == f"{PATH};;/theirs"
     assert found["FF_LOADPATH"] == "/their/plugins"
     assert found["OMP_NUM_THREADS"] == found["OPENBLAS_NUM_THREADS"] == "1"
     assert found["PATH"] == os.environ["PATH"]
 
 
 def test_command_is_a_list_without_a_shell():
-    given = freefem.command("solid.edp", {"mesh": "a b;c.msh", "kappa": 1000.0, "count": 3})
-    assert given[1:5] == ["-nw", "-v", "0", str(EDP / "solid.edp")]
+    given = freefem.command(Path("solid.edp"), {"mesh": "a b;c.msh", "kappa": 1000.0, "count": 3})
+    assert given[1:5] == ["-nw", "-v", "0", "solid.edp"]
     assert given[5:] == ["-mesh", "a b;c.msh", "-kappa", "1000.0", "-count", "3"]
 
 
@@ -191,7 +191,7 @@ def test_the_check_finds_nothing_wrong():
 def test_the_check_loads_what_the_models_load():
     loads = {
         name: set(re.findall(r'^load "(\w+)"', path.read_text(), re.MULTILINE))
-        for path in EDP.iterdir()
+        for path in PATH.parent.rglob("*.?dp")
         for name in [path.name]
     }
     assert loads.pop("check.edp") == set().union(*loads.values())

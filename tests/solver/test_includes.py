@@ -15,10 +15,10 @@ import pytest
 
 from solver import solve
 from solver.effects import KINDS
-from solver.freefem import EDP
 
 TESTS = Path(__file__).parent / "edp"
-FILES = {path.name: path.read_text(encoding="utf-8") for path in sorted(EDP.glob("*.??p"))}
+SOLVER = Path(solve.__file__).parent
+FILES = {path.name: path.read_text(encoding="utf-8") for path in sorted(SOLVER.rglob("*.[ei]dp"))}
 USERS = FILES | {path.name: path.read_text(encoding="utf-8") for path in TESTS.glob("*.??p")}
 INCLUDES = [name for name in FILES if name.endswith(".idp")]
 MODELS = ("cell_", "membrane_", "solid_")

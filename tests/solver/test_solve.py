@@ -164,8 +164,8 @@ def test_without_freefem(make_case, mesh_of, tmp_path, monkeypatch):
 def test_time_limit_keeps_what_was_reached(make_case, mesh_of, tmp_path, monkeypatch):
     """The walk is held up after its second state; both are in the record."""
     slow = tmp_path / "membrane.edp"
-    text = (freefem.EDP / "membrane.edp").read_text()
-    walk = (freefem.EDP / "output.idp").read_text()
+    text = solve.program_of("membrane").read_text()
+    walk = (freefem.PATH / "output.idp").read_text()
     assert "states.flush;" in walk
     (tmp_path / "slow_output.idp").write_text(
         walk.replace("states.flush;", 'states.flush; if (number == 5) exec("exec sleep 60");')
@@ -175,7 +175,7 @@ def test_time_limit_keeps_what_was_reached(make_case, mesh_of, tmp_path, monkeyp
     monkeypatch.setattr(
         freefem,
         "command",
-        lambda program, flags, make=freefem.command: make(str(slow), flags),
+        lambda program, flags, make=freefem.command: make(slow, flags),
     )
     path = LoadPath(kind="isobaric", held=0.3, stops=(0.0, 0.05, 0.1, 0.15))
     case = make_case(path=path)

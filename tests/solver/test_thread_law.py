@@ -5,10 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solver import freefem, thread_law
+from solver import freefem
 from solver.effects import ThreadLaw
+from solver.threads import thread_law
 
 PROGRAM = Path(__file__).parent / "edp" / "thread_law.edp"
+THREADS = Path(thread_law.__file__).parent
 STRETCHES = np.concatenate([np.linspace(0.7, 1.5, 41), 1 + np.linspace(-5e-3, 5e-3, 41)])
 WIDTHS = [1e-3, 2e-5]
 TENSION_ONLY, TWO_WAY = ThreadLaw.TENSION_ONLY, ThreadLaw.TWO_WAY
@@ -23,7 +25,9 @@ def in_freefem(tmp_path):
         numbers = " ".join(repr(float(s)) for s in STRETCHES)
         (tmp_path / "stretches.txt").write_text(f"{len(STRETCHES)} {numbers}\n")
         limits = freefem.Limits(wall_time=30, memory=2000)
-        freefem.run(str(PROGRAM), {"slack_width": width}, tmp_path, tmp_path / "log", limits)
+        folders = [freefem.PATH, THREADS]
+        given = {"slack_width": width}
+        freefem.run(PROGRAM, given, tmp_path, tmp_path / "log", limits, folders)
         table = np.genfromtxt(tmp_path / "law.csv", delimiter=",", names=True)
         return {name: table[name] for name in table.dtype.names}
 

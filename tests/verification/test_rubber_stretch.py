@@ -7,9 +7,9 @@ import pytest
 
 from geometry.cell import CellMesh
 from geometry.section import SectionMesh
-from solver.cylinder_mechanics import Cylinder, State
 from solver.effects import Effects
 from solver.load_path import LoadPath
+from solver.models.cylinder.mechanics import Cylinder, State
 from solver.numerics import Numerics
 
 NAME = "rubber_stretch_max"

@@ -323,7 +323,7 @@ def test_what_stops_freefem_from_outside_is_tried_again(project, copy, tmp_path)
 )
 def test_a_broken_freefem_stops_at_once(copy, tmp_path, script, said):
     next((copy.folder / "results/cases").glob("*.h5")).unlink()
-    copy.write("solver/edp/newton.idp", copy.read("solver/edp/newton.idp") + "// edited\n")
+    copy.write("solver/path/newton.idp", copy.read("solver/path/newton.idp") + "// edited\n")
     program = tmp_path / "FreeFem++"
     program.write_text("#!/bin/sh\n" + script.format(real=shutil.which("FreeFem++")))
     program.chmod(0o755)

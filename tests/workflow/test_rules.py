@@ -111,13 +111,17 @@ EDITS = {
     "geometry/meridian.py": {"Meshing.mesh"} | MEMBRANE | GATHER | DRAW91,
     "geometry/whole.py": set(),
     "solver/case.py": FIG90 | MESHED | AFTER,
-    "solver/geometric.py": {job for job in FIG90 if "geometric" in job} | GATHER | DRAW90,
-    "solver/cylinder.py": {job for job in FIG90 if "cylinder" in job} | GATHER | DRAW90,
-    "solver/edp/membrane.edp": MEMBRANE | GATHER | DRAW91,
-    "solver/edp/solid.edp": SOLID | GATHER | DRAW91,
-    "solver/edp/ends_clamp.idp": SOLID | GATHER | DRAW91,
-    "solver/edp/check.edp": set(),
-    "solver/edp/newton.idp": MESHED | GATHER | DRAW91,
+    "solver/models/geometric/equation.py": {job for job in FIG90 if "geometric" in job}
+    | GATHER
+    | DRAW90,
+    "solver/models/cylinder/curve.py": {job for job in FIG90 if "cylinder" in job}
+    | GATHER
+    | DRAW90,
+    "solver/models/membrane/membrane.edp": MEMBRANE | GATHER | DRAW91,
+    "solver/models/solid/solid.edp": SOLID | GATHER | DRAW91,
+    "solver/models/solid/ends_clamp.idp": SOLID | GATHER | DRAW91,
+    "solver/path/check.edp": set(),
+    "solver/path/newton.idp": MESHED | GATHER | DRAW91,
     "workflow/figures/fig90.py": DRAW90,
     "workflow/figures/style.py": DRAW90 | DRAW91,
     "workflow/data/dataset.py": AFTER,
@@ -177,8 +181,8 @@ def test_an_edited_source_runs_what_reads_it(read_by, source):
 
 def test_one_edited_source(project, edited):
     """That the jobs which follow do run."""
-    edited("solver/edp/solid.edp", lambda text: text + "// edited\n")
-    assert project.planned() - {CHECK} == EDITS["solver/edp/solid.edp"]
+    edited("solver/models/solid/solid.edp", lambda text: text + "// edited\n")
+    assert project.planned() - {CHECK} == EDITS["solver/models/solid/solid.edp"]
 
 
 def test_a_deleted_record_is_solved_again(project):

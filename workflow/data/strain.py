@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from solver import thread_law
 from solver.case import Case
 from solver.effects import Stretch
 from solver.record import Solution
 from solver.status import Flag
+from solver.threads import thread_law
 from workflow.study.limits import Limits
 
 LONG = 1.05  # thread stretch that is worth a word: few fibres bear more

@@ -120,22 +120,21 @@ def spec_of_mesh(wildcards):
 
 
 # Of all sources of the solver, those that only one model reads.
-MODEL_SOURCES = {model: matching(f"solver/{model}*.py", f"solver/edp/{model}*") for model in MODELS}
-MODEL_SOURCES["solid"] += matching("solver/edp/ends_*")
+MODEL_SOURCES = {model: matching(f"solver/models/{model}/*.*") for model in MODELS}
 MODEL_SOURCES["cell"] += matching("geometry/cell.py")
 
 
 def solver_sources(wildcards):
     """Sources that decide the result of a case; what geometry makes of it is in its mesh."""
     case = case_of(wildcards.case)
-    edp = ["solver/edp/*.edp", "solver/edp/*.idp"] if case.mesh else []
+    edp = ["solver/**/*.edp", "solver/**/*.idp"] if case.mesh else []
     others = [
         f for model, files in MODEL_SOURCES.items() if model != case.case.model for f in files
     ]
     read = ("muscle", "refusal", "cell", "seal", "attempt", "files")
     geometry = [f"geometry/{name}.py" for name in read]
     return matching(
-        "solver/*.py", *geometry, *edp, without=[*others, of_checkout("solver/edp/check.edp")]
+        "solver/**/*.py", *geometry, *edp, without=[*others, of_checkout("solver/path/check.edp")]
     )
 
 

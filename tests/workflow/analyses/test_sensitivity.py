@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from solver import cylinder
+from solver.models.cylinder import curve
 from solver.record import unreached
 from solver.status import StateStatus
 from workflow.analyses.analysis import Solved
@@ -46,7 +46,7 @@ def test_the_softest_rubber_is_silicone(normal):
 
 @pytest.mark.parametrize("changes", [{}, {"thread_stiffness": 60.0}, {"contraction": 0.15}])
 def test_roots_are_those_of_the_cylinder(normal, changes):
-    expected = cases.outputs(*map(cylinder.solve, normal.cases(changes, "cylinder")))
+    expected = cases.outputs(*map(curve.solve, normal.cases(changes, "cylinder")))
     found = cases._by_cylinder(normal, changes)
     assert found == pytest.approx(expected, rel=1e-8)
 

@@ -17,7 +17,7 @@ from solver.status import StateStatus
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
 
-DATA = ("solver/edp/*",)  # whichever model a calibration names
+DATA = ("solver/**/*.[ei]dp",)  # whichever model a calibration names
 
 
 def changed(muscle: StudiedMuscle, values: Mapping[str, float]) -> StudiedMuscle:

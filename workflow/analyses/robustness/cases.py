@@ -17,11 +17,11 @@ from scipy.stats import qmc
 from geometry.meridian import MeridianMesh
 from geometry.muscle import Braid, Muscle
 from geometry.section import SectionMesh
-from solver import geometric
 from solver.case import Case
 from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import LoadPath, PathKind
 from solver.material import MooneyRivlin, Thread
+from solver.models.geometric import equation
 from solver.numerics import Numerics
 from workflow.analyses.analysis import Solved, StudyCase
 from workflow.analyses.robustness.table import notes, table
@@ -217,7 +217,7 @@ def _path(muscle: Muscle, pressure: float, choice: float) -> LoadPath:
         return LoadPath(kind=PathKind.ISOBARIC, held=round(pressure, 6), stops=stops)
     if choice < 4:
         return LoadPath(kind=PathKind.ISOMETRIC, held=round(0.2 * share, 4), stops=rising)
-    load = 0.6 * share * abs(float(geometric.force(muscle, pressure, 0.0)))
+    load = 0.6 * share * abs(float(equation.force(muscle, pressure, 0.0)))
     return LoadPath(kind=PathKind.ISOTONIC, held=round(load, 3), stops=rising)
 
 

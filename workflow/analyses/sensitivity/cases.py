@@ -17,9 +17,9 @@ from scipy.optimize import brentq
 
 from geometry.muscle import Braid
 from solver.case import Case
-from solver.cylinder_mechanics import Cylinder, State
 from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
+from solver.models.cylinder.mechanics import Cylinder, State
 from solver.record import Solution
 from solver.status import StateStatus
 from workflow.analyses.analysis import Solved, StudyCase

@@ -10,8 +10,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from geometry.cell import Box
-from solver import thread_law
 from solver.case import Case
+from solver.threads import thread_law
 from workflow.analyses.analysis import Solved
 from workflow.data.principal_stress import principal_of_six
 

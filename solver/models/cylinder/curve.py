@@ -1,7 +1,7 @@
 """A uniform cylinder: rubber through the wall thickness and stretching threads, no end caps.
 
-What a state is stands in solver/cylinder_mechanics.py. A path is followed by solving at each stop
-for the unknowns (radius, axial stretch, twist; those that the case has) from the stop before.
+What a state is stands in mechanics.py beside this module. A path is followed by solving at each
+stop for the unknowns (radius, axial stretch, twist; those that the case has) from the stop before.
 """
 
 import math
@@ -14,10 +14,10 @@ from scipy.optimize import minimize_scalar, root
 
 from solver import continuity
 from solver.case import Case
-from solver.cylinder_mechanics import Cylinder, State
 from solver.effects import Rubber
 from solver.judge import judged
 from solver.load_path import Control, Waypoint
+from solver.models.cylinder.mechanics import Cylinder, State
 from solver.record import Solution, unreached
 from solver.zero_force import Finder, Point, Search
 
@@ -26,7 +26,7 @@ SHARP = 1e-3  # width of slackening, as a share, that counts as none
 SMALLEST_STEP = 1 / 1024  # share of the way to a waypoint
 LONGEST_STEP = 0.25  # of any unknown; they have no unit
 ARC_STEP, ARC_STEPS = 0.02, 500  # along a branch, in the unknowns
-NAMES = {  # of controls, as solver/edp/newton.idp writes them
+NAMES = {  # of controls, as solver/path/newton.idp writes them
     Control.CONTRACTION: "contraction",
     Control.PRESSURE: "pressure [MPa]",
     Control.FORCE: "force [N]",

@@ -1,4 +1,4 @@
-"""The force of a thread against its stretch; the twin of solver/edp/threads_*.idp.
+"""The force of a thread against its stretch; the twin of solver/threads/threads_*.idp.
 
 All functions take the thread stretch lf and the width over which a thread slackens
 (solver.numerics.Slack), and give shares of EA. A test compares the two languages.

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from geometry.muscle import Braid
-from solver import thread_law
 from solver.case import Case
 from solver.effects import Rubber, Stretch, Twist, Wall
 from solver.material import Thread
+from solver.threads import thread_law
 
 Array = NDArray[np.float64]
 WALL_POINTS = 16  # Gauss points through the wall: exact to rounding for any wall that is built

@@ -1,0 +1,1 @@
+"""One periodic cell of the braid, by FreeFEM."""

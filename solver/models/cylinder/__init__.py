@@ -1,0 +1,1 @@
+"""A uniform cylinder."""

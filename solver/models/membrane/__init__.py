@@ -1,0 +1,1 @@
+"""A membrane along its meridian, by FreeFEM."""

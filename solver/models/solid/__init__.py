@@ -1,0 +1,1 @@
+"""The axisymmetric section of the wall, by FreeFEM."""
