@@ -8,6 +8,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
+from functools import cached_property
 from typing import Any
 
 from geometry.muscle import Muscle
@@ -144,7 +145,7 @@ class Case:
         """Canonical JSON: sorted keys, shortest decimals, 20 for 20.0."""
         return json.dumps(_canonical(self.as_dict()), sort_keys=True, allow_nan=False)
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Name of the case in files: the first 16 hexadecimal digits of its SHA-256."""
         return digest(self.canonical())

@@ -5,7 +5,7 @@ is off is absent from the solve: no unknowns, no terms. In FreeFEM each alternat
 of its own, and a program is composed of those that are on (solver/solve.py).
 """
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from solver.refusal import UnsolvableCase
@@ -83,11 +83,13 @@ class Effects:
     rubber: Rubber = field(default=Rubber.ELASTIC)
 
     def __post_init__(self) -> None:
-        for switch in fields(Effects):
-            kind, value = KINDS[switch.name], getattr(self, switch.name)
+        for name, kind in KINDS.items():
+            value = getattr(self, name)
+            if type(value) is kind:
+                continue
             if value not in list(kind):
-                raise UnsolvableCase(switch.name, value, ", ".join(kind))
-            object.__setattr__(self, switch.name, kind(value))
+                raise UnsolvableCase(name, value, ", ".join(kind))
+            object.__setattr__(self, name, kind(value))
         if self.stretch is Stretch.RIGID:
             if self.threads is ThreadLaw.TWO_WAY:
                 allowed = "elastic with two_way threads: two rigid layers that push lock the wall"
@@ -212,6 +214,9 @@ def active(model: str, effects: Effects, *, braided: bool) -> list[str]:
     ]
 
 
+DEFAULT = Effects()
+
+
 def check_carried(model: str, effects: Effects) -> None:
     """Refuse a switch that was moved and that the model does not read.
 
@@ -221,7 +226,7 @@ def check_carried(model: str, effects: Effects) -> None:
         Naming the models that carry it.
     """
     for name in KINDS.keys() - CHOICES:
-        value, default = getattr(effects, name), getattr(Effects(), name)
+        value, default = getattr(effects, name), getattr(DEFAULT, name)
         if value is not default and model not in READ_BY[name]:
             allowed = f"{default} with {model}; {value} with {', '.join(READ_BY[name])}"
             raise UnsolvableCase(name, value, allowed)

@@ -8,6 +8,7 @@ solved once, however many figures show it.
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 from geometry import section
@@ -67,7 +68,7 @@ class PlannedCase:
         others = len(self.places) - 1
         return f"{self.places[0]}{f' (and {others} more)' if others else ''}"
 
-    @property
+    @cached_property
     def mesh(self) -> str | None:
         """File name of the mesh, None for a model without."""
         return mesh_file(self.case)
