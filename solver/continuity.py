@@ -82,36 +82,57 @@ def snaps(case: Case, solved: Solved, again: Callable[[Case], Solved]) -> list[t
     ``again`` solves a case with more stops. What its finer steps reach with another value is
     replaced in ``solved``.
     """
-    fine_case, fine = case, solved
+    path = case.path
+    reached = np.flatnonzero(np.isfinite(solved[0]["force"][: len(path.stops)]))
+    if not reached.size:
+        return []
+    kept = [path.stops[k] for k in reached]  # what has no state is not tried again
+    stops, values = path.stops, solved[0]
     for _ in range(ROUNDS):
-        stops, found = fine_case.path.stops, gaps(fine_case, fine[0])
+        found = gaps(_with_stops(case, stops), values)
         if not found:
             break
         more = [x for k in found for x in np.linspace(stops[k], stops[k + 1], BETWEEN + 2)[1:-1]]
-        stops = tuple(sorted({*stops, *map(float, more)}))
-        fine_case = replace(case, path=replace(case.path, stops=stops, zero_force=False))
-        fine = again(fine_case)
-    if fine is solved:
+        stops = tuple(sorted({*kept, *(set(stops) - set(path.stops)), *map(float, more)}))
+        fine = again(_with_stops(case, stops))
+        values = fine[0]
+    if values is solved[0]:
         return []
-    stops = fine_case.path.stops
-    places = [stops.index(stop) for stop in case.path.stops]
-    if _others(case, solved, fine, places).any():
-        whole = replace(case, path=replace(case.path, stops=stops))
-        _take_over(solved, again(whole), [*places, len(stops)][: case.path.states])
-    return [(stops[k], stops[k + 1]) for k in gaps(fine_case, fine[0])]
+    places = [stops.index(stop) for stop in kept]
+    if _differ(case, solved[0], reached, fine[0], places):
+        if path.zero_force:
+            fine = again(replace(case, path=replace(path, stops=stops)))
+            places, reached = [*places, len(stops)], np.append(reached, len(path.stops))
+        _take_over(solved, fine, dict(zip(map(int, reached), places, strict=True)))
+    return [(stops[k], stops[k + 1]) for k in gaps(_with_stops(case, stops), values)]
 
 
-def _others(case: Case, solved: Solved, fine: Solved, places: Sequence[int]) -> NDArray[np.bool_]:
-    """Stops that finer steps have reached with another value."""
+def _with_stops(case: Case, stops: tuple[float, ...]) -> Case:
+    """The same curve by other stops."""
+    return replace(
+        case,
+        path=replace(case.path, stops=stops, zero_force=False),
+        fields_at=tuple(stop for stop in case.fields_at if stop in stops),
+    )
+
+
+def _differ(
+    case: Case,
+    states: States,
+    numbers: NDArray[np.intp],
+    fine: States,
+    places: Sequence[int],
+) -> bool:
+    """Whether finer steps have reached some states with another value."""
     name = "force" if case.path.kind is not PathKind.ISOTONIC else "contraction"
-    values = solved[0][name][: len(places)]
-    largest = np.nanmax(np.abs(values), initial=0.0)
-    return np.asarray(np.abs(fine[0][name][places] - values) > SAME * largest)
+    values = states[name][numbers]
+    largest = np.max(np.abs(values))
+    return bool(np.any(np.abs(fine[name][places] - values) > SAME * largest))
 
 
-def _take_over(solved: Solved, fine: Solved, places: Sequence[int]) -> None:
-    """Replace what finer steps have reached, fields too."""
-    for k, place in enumerate(places):
+def _take_over(solved: Solved, fine: Solved, places: dict[int, int]) -> None:
+    """Replace what finer steps have reached, fields too; ``places`` says where it is there."""
+    for k, place in places.items():
         if np.isfinite(fine[0]["force"][place]):
             for variable, values in solved[0].items():
                 values[k] = fine[0][variable][place]
