@@ -3,7 +3,7 @@
 #
 #   snakemake --cores 2                                         the study of the paper
 #   snakemake --cores 2 --config study=config/smoke/study.yaml  another study
-#   snakemake --cores 2 everything                              all studies and pages as well
+#   snakemake --cores 2 everything                              all analyses and pages as well
 #   snakemake --report results/report.html                      the pages in one file
 from snakemake.utils import min_version
 
@@ -17,9 +17,8 @@ include: "workflow/rules/solve.smk"
 include: "workflow/rules/gather.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/fields.smk"
-include: "workflow/rules/studies.smk"
+include: "workflow/rules/analyses.smk"
 include: "workflow/rules/benchmark.smk"
-include: "workflow/rules/calibrate.smk"
 include: "workflow/rules/pages.smk"
 include: "workflow/rules/report.smk"
 

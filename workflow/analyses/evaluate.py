@@ -1,4 +1,4 @@
-"""From the records of an analysis to its table, notes and figures."""
+"""From the records of an analysis to its tables, figures and other files."""
 
 from pathlib import Path
 
@@ -6,26 +6,38 @@ from geometry.files import atomic_write
 from workflow.analyses import analysis
 from workflow.data import records
 from workflow.figures import style
+from workflow.run import failures
+from workflow.study.study import load
 
 
-def evaluate(name: str, study_file: str, table: Path, figures: Path) -> None:
-    """Read the records of a study; write its table and figures, each whole or not at all.
+def evaluate(name: str, study_file: str, table: Path, figures: Path, files: Path) -> None:
+    """Read the records of an analysis; write all that it makes, each file whole or not at all.
+
+    Its own table is written as ``table``, others beside it.
 
     Raises
     ------
     StudyError
         If a record is missing, damaged, or that of another case.
     """
+    asked = analysis.named(name)
     solved = [
-        analysis.Solved(asked, records.read_one(asked.case.key, asked.label)[1])
-        for asked in analysis.cases(name, study_file)
+        analysis.Solved(case, records.read_one(case.case.key, case.label)[1])
+        for case in analysis.cases(name, study_file)
     ]
-    rows = analysis.module(name).table(solved)
-    with atomic_write(table) as beside:
-        rows.to_csv(beside, index=False)
-    if name in analysis.NOTED:
-        with atomic_write(table.with_name(f"{name}_notes.csv")) as beside:
-            analysis.module(name).notes(rows).to_csv(beside, index=False, float_format="%.4g")
-    for figure, drawing in analysis.module(name).draw(solved, rows).items():
+    if asked.solves_cases:
+        labels = {each.asked.case.key: each.asked.label for each in solved}
+        solutions = {each.asked.case.key: each.solution for each in solved}
+        failures.write_analysis(name, labels, solutions, table.with_name(asked.failures))
+    study = load(study_file)
+    tables = asked.tabulated(study, solved)
+    for stem, rows in tables.items():
+        path = table if stem == name else table.with_name(f"{stem}.csv")
+        with atomic_write(path) as beside:
+            rows.to_csv(beside, index=False, float_format=asked.tables[stem])
+    for stem, text in asked.texts(study, tables).items():
+        with atomic_write(files / stem) as beside:
+            beside.write_text(text, encoding="utf-8")
+    for stem, drawing in asked.drawn(solved, tables).items():
         for suffix in (".svg", ".png"):
-            style.save(drawing, (figures / figure).with_suffix(suffix))
+            style.save(drawing, (figures / stem).with_suffix(suffix))

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from workflow.analyses.calibration import program
+from workflow.analyses.evaluate import evaluate
 from workflow.programs import add_study
 
 
@@ -17,5 +17,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Fit them."""
-    program.run(given.study, given.tables, given.figures, given.muscles)
+    table = given.tables / "calibration.csv"
+    evaluate("calibration", str(given.study), table, given.figures, given.muscles)
     return 0

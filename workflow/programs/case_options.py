@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Mapping
 
 from workflow.analyses import analysis
-from workflow.analyses.analysis import StudyCase
+from workflow.analyses.analysis import AnalysisCase
 from workflow.plan.plan import PlannedCase
 from workflow.programs import add_study, plan_of
 
@@ -15,7 +15,7 @@ def add_cases(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--name", metavar="ANALYSIS", help="of this analysis; else of the scenes")
 
 
-def cases_of(given: argparse.Namespace) -> Mapping[str, PlannedCase | StudyCase]:
+def cases_of(given: argparse.Namespace) -> Mapping[str, PlannedCase | AnalysisCase]:
     """Cases by key."""
     if given.name is None:
         return plan_of(given).cases

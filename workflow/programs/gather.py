@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 
 from geometry.files import atomic_write
-from workflow.analyses import dataset_groups
+from workflow.analyses import additions
+from workflow.analyses.registry import ANALYSES
 from workflow.data import dataset, deviation, records, reference, strain
 from workflow.programs import DATASET, FAILURES, add_study, plan_of
 from workflow.run import failures
@@ -22,12 +23,16 @@ def run(given: argparse.Namespace) -> int:
     """Read all records of the study and write what is made of all."""
     plan = plan_of(given)
     curves = records.curves_of_study(plan)
-    with dataset_groups.alone(given.dataset):
-        others = dataset_groups.found(given.failures.parent)
+    tables = given.failures.parent
+    with additions.alone(given.dataset):
+        groups = [name for name, each in ANALYSES.items() if each.in_dataset]
+        others = additions.found(groups, tables)
         tree = dataset.build(curves, plan.study.muscles, effects=True, others=others)
         dataset.write(tree, given.dataset)
     solved = {curve.key: curve.solution for curve in curves}
-    failures.write(plan, solved, given.failures, strain.summary(curves))
+    with additions.alone(given.failures):
+        strained = strain.summary(curves)
+        failures.write(plan, solved, given.failures, strained, additions.failed(tables))
     if given.deviation:
         named = {name: muscle.reference for name, muscle in plan.study.muscles.items()}
         rows = deviation.table(tree, reference.of_muscles(named))

@@ -4,7 +4,7 @@ import argparse
 from collections import Counter
 from collections.abc import Iterator
 
-from workflow.analyses import analysis
+from workflow.analyses.registry import ANALYSES
 from workflow.data import records
 from workflow.plan.plan import Plan
 from workflow.programs import add_study, plan_of
@@ -32,8 +32,8 @@ def lines(plan: Plan) -> Iterator[str]:
     for name, scene in plan.study.scenes.items():
         yield f"  {name:24} {scene.path or 'shows muscles'}; {_state(plan, name)}"
     yield "analyses (targets of run)"
-    for name in analysis.FIGURES:
-        yield f"  {name}"
+    for each in ANALYSES.values():
+        yield f"  {each.target or each.name}"
 
 
 def _described(muscle: StudiedMuscle) -> str:

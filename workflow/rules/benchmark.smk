@@ -1,6 +1,6 @@
-# What the accuracy study costs on this machine: snakemake --cores 2 benchmark
+# What the analysis of accuracy costs on this machine: snakemake --cores 2 benchmark
 #
-#   in   the table of the study, so that its figure has both
+#   in   the table of the analysis, so that its figure has both
 #   out  results/cost.csv               medians of several runs one after the other
 #        results/tables/benchmark.csv   how cost grows
 #        results/figures/accuracy.png   drawn again with these costs

@@ -17,7 +17,8 @@ sys.path.insert(0, CHECKOUT)
 
 from solver.case import MODELS, digest
 from workflow.analyses import analysis
-from workflow.data import paper, paraview
+from workflow.analyses.registry import ANALYSES
+from workflow.data import paraview
 from workflow.plan.plan import read
 from workflow.run import sources as closure
 from workflow.study.errors import StudyError
@@ -90,22 +91,23 @@ def mesh_sources(wildcards):
     return matching("geometry/*.py", without=others)
 
 
-STUDIED = {}  # cases of the studies that are asked for, by key
+ANALYSED = {}  # cases of the analyses that are asked for, by key
 
 
-def cases_of_study(name):
-    """Cases of a study by key; making them takes a second, so not before it is asked for."""
+def cases_of_analysis(name):
+    """Cases of an analysis by key; making them takes a second, so not before it is asked for."""
     found = {asked.case.key: asked for asked in analysis.cases(name, STUDY)}
-    STUDIED.update(found)
+    ANALYSED.update(found)
     return found
 
 
 def case_of(key):
-    """A case of the scenes or of a study."""
-    if key not in PLAN.cases and key not in STUDIED:
-        for name in analysis.FIGURES:
-            cases_of_study(name)
-    return PLAN.cases.get(key) or STUDIED[key]
+    """A case of the scenes or of an analysis."""
+    if key not in PLAN.cases and key not in ANALYSED:
+        for name, each in ANALYSES.items():
+            if each.fits(PLAN.study):
+                cases_of_analysis(name)
+    return PLAN.cases.get(key) or ANALYSED[key]
 
 
 def mesh_of(wildcards):
@@ -116,7 +118,7 @@ def mesh_of(wildcards):
 def spec_of_mesh(wildcards):
     if wildcards.mesh in PLAN.meshes:
         return PLAN.meshes[wildcards.mesh]
-    return next(a for a in STUDIED.values() if a.mesh == wildcards.mesh).case.mesh_spec()
+    return next(a for a in ANALYSED.values() if a.mesh == wildcards.mesh).case.mesh_spec()
 
 
 # Of all sources of the solver, those that only one model reads.
@@ -152,17 +154,3 @@ def deviations():
     isobaric = {p.muscle for s in PLAN.scenes.values() for p in s if p.group == "isobaric"}
     measured = any(PLAN.study.muscles[muscle].reference for muscle in isobaric)
     return ["results/tables/deviation.csv"] if measured else []
-
-
-def measured_files():
-    """Files of the user that calibrations are fitted to."""
-    named = {entry.reference for entry in PLAN.study.calibration.values()}
-    return sorted(named.difference(FORCE_MAPS))
-
-
-def asked_calibrations():
-    """All that the calibrations depend on, as one parameter."""
-    study = PLAN.study
-    muscles = {entry.muscle for entry in study.calibration.values()}
-    made_of = [(name, study.muscles[name]) for name in sorted(muscles)]
-    return digest(repr((sorted(study.calibration.items()), made_of, study.variants["default"])))

@@ -1,51 +1,39 @@
 # Which pages the report has, in which chapters. No rules in this file.
-PAPER, VERDICT, ACCURACY = "1 The paper's figures", "2 The verdict", "3 Accuracy"
-EFFECTS, HARD = "4 Effects", "5 Hard cases"
-CHAPTERS = {  # of what is no figure of the paper; a study that is not named is an effect
-    "claims": VERDICT,
-    "deviation": VERDICT,
-    "calibration": VERDICT,
-    "accuracy": ACCURACY,
-    "robustness": HARD,
-    "failures": HARD,
-}
+PAPER, VERDICT, HARD = "1 The paper's figures", "2 The verdict", "5 Hard cases"
+CHAPTERS = {"deviation": VERDICT, "failures": HARD}  # of tables of the scenes; analyses have theirs
 # A report is of the pages, so they are the target then.
 REPORTING = any(argument.partition("=")[0] == "--report" for argument in sys.argv)
 
 
 def page_sources():
-    """Chapter, title, pictures and tables of every page there may be, by name."""
+    """Chapter, title, caption, pictures and tables of every page there may be, by name."""
     pages = {}
+    fitting = [each for each in ANALYSES.values() if each.fits(PLAN.study)]
+    judged = [f"results/tables/{each.name}.csv" for each in fitting if each.on_figures]
     for scene in filter(drawn, PLAN.study.scenes):
-        judged = ["results/tables/claims.csv"] if has_claims() else []
         title = re.sub("^fig0?", "Figure ", scene)
-        pages[scene] = PAPER, title, [f"results/figures/{scene}.png"], judged
-    if has_claims():
-        pages["claims"] = VERDICT, "The paper's claims", [], ["results/tables/claims.csv"]
+        pages[scene] = PAPER, title, caption_of(scene), [f"results/figures/{scene}.png"], judged
     for table in map(Path, [*deviations(), "results/tables/failures.csv"]):
-        pages[table.stem] = CHAPTERS[table.stem], table.stem.capitalize(), [], [str(table)]
-    if PLAN.study.calibration:
-        fitted = ["results/tables/calibration_values.csv", "results/tables/calibration.csv"]
-        pictures = ["results/figures/calibration.png"]
-        pages["calibration"] = VERDICT, "Calibration", pictures, fitted
-    for study, pictures in analysis.FIGURES.items():
-        if pictures and has_claims():
-            drawn_by = expand("results/figures/{picture}.png", picture=pictures)
-            notes = [f"results/tables/{study}_notes.csv"] if study in analysis.NOTED else []
-            pages[study] = CHAPTERS.get(study, EFFECTS), study.capitalize(), drawn_by, notes
+        name = table.stem
+        pages[name] = CHAPTERS[name], name.capitalize(), caption_of(name), [], [str(table)]
+    for each in fitting:
+        pictures = expand("results/figures/{picture}.png", picture=each.figures)
+        tables = expand("results/tables/{table}.csv", table=each.page)
+        pages[each.name] = each.chapter, each.title, each.caption, pictures, tables
     return pages
 
 
-def has_claims():
-    """Whether the study is that of the paper, which claims and studies are about."""
-    muscles = PLAN.study.muscles
-    papers = "dmsp20" in muscles and paper.is_normal(muscles["dmsp20"])
-    return papers and "dmsp20_silicone" in muscles
+def added_to(page):
+    """What is added to the table of a page when analyses end, so that the page comes after that."""
+    if page != "failures":
+        return []
+    fitting = [each for each in ANALYSES.values() if each.fits(PLAN.study) and each.solves_cases]
+    return [f"results/tables/{each.failures}" for each in fitting]
 
 
 def caption_of(page):
-    """What a page shows; a new figure may have none yet."""
-    own = Path(of_checkout(f"workflow/report/{page}.rst"))
+    """What a figure or table of the scenes shows; a new figure may have no words yet."""
+    own = Path(CHECKOUT, "workflow/report", f"{page}.rst")
     return own if own.exists() else own.with_name("unnamed.rst")
 
 

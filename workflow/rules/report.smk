@@ -3,14 +3,16 @@
 #   snakemake --cores 2 everything
 #   snakemake --report results/report.html
 #
-#   in   results/figures, results/tables; workflow/report/<page>.rst, what each page shows
+#   in   results/figures, results/tables; workflow/report/<page>.rst or
+#        workflow/analyses/<page>/caption.rst, what each page shows
 #   out  results/report/<page>.html    caption, figure, the claims that are of it, tables
 #
 # The report holds the pages that are there; it is made of files, and nothing runs for it.
 report: "../report/workflow.rst"
 
 
-for page_name, (page_chapter, page_title, page_pictures, page_tables) in PAGES.items():
+for page_name, parts in PAGES.items():
+    page_chapter, page_title, page_caption, page_pictures, page_tables = parts
 
     rule:
         name:
@@ -18,12 +20,13 @@ for page_name, (page_chapter, page_title, page_pictures, page_tables) in PAGES.i
         input:
             pictures=page_pictures,
             tables=page_tables,
-            caption=str(caption_of(page_name)),
+            additions=added_to(page_name),
+            caption=os.path.relpath(page_caption),
             sources=sources("workflow.programs.page"),
         output:
             report(
                 f"results/report/{page_name}.html",
-                caption=f"../report/{caption_of(page_name).name}",
+                caption=os.path.relpath(page_caption, Path(CHECKOUT, "workflow/rules")),
                 category=page_chapter,
                 labels={"page": page_title},
             ),

@@ -1,4 +1,4 @@
-"""The accuracy study on made-up solutions, whose errors and orders are known."""
+"""The analysis of accuracy on made-up solutions, whose errors and orders are known."""
 
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from workflow.analyses.accuracy.errors import (
     grid_convergence_index,
     pair_error,
 )
+from workflow.analyses.accuracy.table import rows as table_of
 from workflow.analyses.accuracy.take_over import take_over
 from workflow.analyses.analysis import Solved
 from workflow.plan.mesh_error import COLUMNS
@@ -88,7 +89,7 @@ def made_up(asked) -> Solved:
 
 @pytest.fixture(scope="module")
 def table() -> pd.DataFrame:
-    return cases.table([made_up(asked) for asked in cases.cases(load(STUDY))])
+    return table_of([made_up(asked) for asked in cases.cases(load(STUDY))])
 
 
 def test_every_setting_has_a_row(table):

@@ -1,4 +1,4 @@
-"""Cases of a study by name: listed, and tried again only where they failed and when asked."""
+"""Cases of an analysis by name: listed, and tried again only where they failed and when asked."""
 
 import pytest
 
@@ -6,17 +6,19 @@ from solver import record, solve
 from solver.status import CaseStatus
 from workflow.__main__ import main
 from workflow.analyses import analysis
-from workflow.analyses.analysis import StudyCase
+from workflow.analyses.analysis import AnalysisCase
 from workflow.data import records
 
 
 @pytest.fixture
 def failed(make_case, tmp_path, monkeypatch):
-    """A study of three cases: one damaged, one without a mesh, one with an answer."""
+    """An analysis of three cases: one damaged, one without a mesh, one with an answer."""
     paths = [make_case(model=model) for model in ("geometric", "membrane", "solid")]
-    cases = tuple(StudyCase(case, f"a {case.model}") for case in paths)
+    cases = tuple(AnalysisCase(case, f"a {case.model}") for case in paths)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setitem(analysis.FIGURES, "some", ())
+    known = analysis.Analysis(name="some", title="", chapter="", tables={"some": None})
+    monkeypatch.setattr(analysis, "named", {"some": known}.__getitem__)
+    monkeypatch.setattr(analysis.Analysis, "solves_cases", True)
     monkeypatch.setattr(analysis, "cases", lambda name, _: cases if name == "some" else None)
     for folder in (records.FOLDER, tmp_path / "results/meshes"):
         folder.mkdir(parents=True)
@@ -28,7 +30,7 @@ def failed(make_case, tmp_path, monkeypatch):
     return cases
 
 
-def test_failed_cases_of_a_study_are_tried_again_when_asked(failed, tmp_path, capsys):
+def test_failed_cases_of_an_analysis_are_tried_again_when_asked(failed, tmp_path, capsys):
     assert main(["cases", "--name", "some"]) == 0
     said = capsys.readouterr().out.splitlines()
     assert [line.split()[1] for line in said] == ["damaged", "mesh_failed", "limit_point"]
@@ -40,12 +42,12 @@ def test_failed_cases_of_a_study_are_tried_again_when_asked(failed, tmp_path, ca
     assert capsys.readouterr().out == ""
 
 
-def test_a_study_that_is_not_there(capsys):
+def test_an_analysis_that_is_not_there(capsys):
     assert main(["retry", "--name", "robustnes"]) == 1
     assert "nearest: robustness" in capsys.readouterr().err
 
 
-def test_a_damaged_record_of_a_study_is_named(failed, tmp_path, capsys):
+def test_a_damaged_record_of_an_analysis_is_named(failed, tmp_path, capsys):
     table = tmp_path / "table.csv"
     assert main(["analysis", "--name", "some", "--table", str(table)]) == 1
     said = capsys.readouterr().err

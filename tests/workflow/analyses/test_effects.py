@@ -1,4 +1,4 @@
-"""The study of effects: its cases, and how changes and savings are read from solutions."""
+"""The analysis of effects: its cases, and how changes and savings are read from solutions."""
 
 import json
 from pathlib import Path

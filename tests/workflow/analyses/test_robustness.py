@@ -1,4 +1,4 @@
-"""The robustness study: which cases it asks for, and what its table says of synthetic solutions."""
+"""Hard cases: which cases it asks for, and what its table says of synthetic solutions."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -9,19 +9,20 @@ import pytest
 
 from solver.record import Solution, unreached
 from solver.status import CaseStatus, StateStatus
-from workflow.analyses.analysis import Solved, StudyCase
+from workflow.analyses.analysis import AnalysisCase, Solved
 from workflow.analyses.robustness import cases
+from workflow.analyses.robustness import table as tables
 from workflow.study.study import load
 
 CONFIG = Path(__file__).parents[3] / "config" / "config.yaml"
 
 
 @pytest.fixture(scope="module")
-def asked() -> list[StudyCase]:
+def asked() -> list[AnalysisCase]:
     return cases.cases(load(CONFIG))
 
 
-def of(asked: list[StudyCase], **tags: object) -> list[StudyCase]:
+def of(asked: list[AnalysisCase], **tags: object) -> list[AnalysisCase]:
     return [a for a in asked if tags.items() <= (a.tags | {"model": a.case.model}).items()]
 
 
@@ -67,7 +68,7 @@ def test_threads_of_the_hypercube_are_no_closer_than_their_diameter(asked):
         assert gap > np.sqrt(4 * stiffness / (2100 * np.pi))
 
 
-def solved(asked: StudyCase, force: np.ndarray) -> Solved:
+def solved(asked: AnalysisCase, force: np.ndarray) -> Solved:
     states = unreached(asked.case.path.states)
     reached = np.isfinite(force)
     states["force"] = force
@@ -91,7 +92,7 @@ def table(asked) -> pd.DataFrame:
         if a.case.model == "membrane":
             force[25:] = np.nan
         entries.append(solved(a, force))
-    return cases.table(entries)
+    return tables.table(entries)
 
 
 def test_differences_are_shares_of_the_largest_force_of_the_finest_mesh(table):
@@ -111,18 +112,18 @@ def test_a_membrane_far_from_its_solid_says_why(asked):
         ours = force.copy()
         if where is not None:
             ours[where] += 50
-        rows = cases.table([solved(fine, force), solved(membrane, ours)]).set_index("model")
+        rows = tables.table([solved(fine, force), solved(membrane, ours)]).set_index("model")
         assert rows.loc["membrane", "cause"].startswith(cause)
         assert bool(rows.loc["membrane", "cause"]) == bool(cause)
         assert rows.loc["solid", "cause"] == ""
 
 
 def test_notes_are_what_ended_early_or_is_far_apart(table):
-    noted = cases.notes(table)
+    noted = tables.notes(table)
     assert set(zip(noted["model"], noted["mesh"], strict=True)) == {("solid", 1)}  # 0.5 % apart
     table.loc[table["model"] == "membrane", "cause"] = "ends bend"
     table.loc[table["mesh"] == 2, "status"] = "limit_point"
-    noted = cases.notes(table)
+    noted = tables.notes(table)
     assert list(noted["model"]) == ["solid", "solid", "membrane"]
 
 
@@ -140,6 +141,6 @@ def test_an_invalid_state_is_not_compared(asked):
     status = list(bad.solution.state_status)
     status[7] = StateStatus.INVALID_STATE
     bad = replace(bad, solution=replace(bad.solution, state_status=status))
-    row = cases.table([good, bad]).set_index("mesh").loc[1]
+    row = tables.table([good, bad]).set_index("mesh").loc[1]
     assert row["difference"] == 0
     assert row["invalid states"] == 1

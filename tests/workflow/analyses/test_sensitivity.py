@@ -11,7 +11,9 @@ from solver.record import unreached
 from solver.status import StateStatus
 from workflow.analyses.analysis import Solved
 from workflow.analyses.sensitivity import cases, figures
-from workflow.analyses.sensitivity.cases import DESIGN, OUTPUTS, STEP, UNCERTAIN, Normal
+from workflow.analyses.sensitivity import table as tables
+from workflow.analyses.sensitivity.cases import STEP, Normal
+from workflow.analyses.sensitivity.table import DESIGN, OUTPUTS, UNCERTAIN
 from workflow.study.study import load
 
 CONFIG = Path(__file__).parents[3] / "config" / "config.yaml"
@@ -24,7 +26,7 @@ def normal():
 
 @pytest.fixture
 def few(monkeypatch):
-    monkeypatch.setattr(cases, "SAMPLES", 64)
+    monkeypatch.setattr(tables, "SAMPLES", 64)
 
 
 def test_the_normal_condition_is_the_muscle_of_the_paper(normal):
@@ -46,20 +48,20 @@ def test_the_softest_rubber_is_silicone(normal):
 
 @pytest.mark.parametrize("changes", [{}, {"thread_stiffness": 60.0}, {"contraction": 0.15}])
 def test_roots_are_those_of_the_cylinder(normal, changes):
-    expected = cases.outputs(*map(curve.solve, normal.cases(changes, "cylinder")))
-    found = cases._by_cylinder(normal, changes)
+    expected = tables.outputs(*map(curve.solve, normal.cases(changes, "cylinder")))
+    found = tables._by_cylinder(normal, changes)
     assert found == pytest.approx(expected, rel=1e-8)
 
 
 def test_a_threshold_is_the_first_zero_of_force(normal):
     """The force of wide muscles vanishes once more, at several times their diameter."""
     wide = {"inner_diameter": 38.2, "lead": 197.1, "nbr": 0.4, "contraction": 0.112}
-    found = cases._by_cylinder(normal, wide | {"pressure": 0.378})
+    found = tables._by_cylinder(normal, wide | {"pressure": 0.378})
     assert 0 < found["threshold_pressure"] < 0.1
 
 
 def test_a_pushing_muscle_has_a_force_only(normal):
-    found = cases._by_cylinder(normal, {"pressure": 0.05})
+    found = tables._by_cylinder(normal, {"pressure": 0.05})
     assert found["force"] < 0
     assert np.isnan([found["threshold_pressure"], found["free_contraction"]]).all()
 
@@ -81,10 +83,10 @@ def power_law(normal, changes):
 
 
 def test_elasticities_and_shares_are_those_of_the_function(normal, few, monkeypatch):
-    monkeypatch.setattr(cases, "_by_cylinder", power_law)
-    monkeypatch.setattr(cases, "ANALYSES", {"known": {"c10": 0.2, "c01": 0.2}})
+    monkeypatch.setattr(tables, "_by_cylinder", power_law)
+    monkeypatch.setattr(tables, "ANALYSES", {"known": {"c10": 0.2, "c01": 0.2}})
     asked = cases.cases(load(CONFIG))
-    rows = cases.table([Solved(a, solution(a)) for a in asked])
+    rows = tables.table(normal, [Solved(a, solution(a)) for a in asked])
     at = rows.set_index(["analysis", "model", "input", "output"])
     column = "percent per percent"
     assert at.loc[("local", "cylinder", "pressure", "force"), column] == pytest.approx(2)
@@ -111,7 +113,7 @@ def solution(asked):
 
 
 def test_the_seed_fixes_the_samples(normal, few):
-    first, again = (list(cases._global("x", normal, {"c10": 0.1})) for _ in range(2))
+    first, again = (list(tables._global("x", normal, {"c10": 0.1})) for _ in range(2))
     assert first == again
 
 
@@ -131,5 +133,5 @@ def test_the_figure_has_a_row_per_analysis():
         | {"first": 0.5, "total": 0.6, "total_95": 0.1}
         for output in OUTPUTS
     ]
-    figure = figures.draw(pd.DataFrame(rows))
+    figure = figures.overview(pd.DataFrame(rows))
     assert len(figure.axes) == 6

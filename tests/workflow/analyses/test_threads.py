@@ -1,4 +1,4 @@
-"""The study of discrete threads: its cases, the correction in its table, what a picture shows."""
+"""Discrete threads: its cases, the correction in its table, what a picture shows."""
 
 from pathlib import Path
 
@@ -10,9 +10,9 @@ from geometry import cell
 from geometry.cell import Box, CellMesh
 from solver.record import Solution, unreached
 from solver.status import CaseStatus, StateStatus
-from workflow.analyses import dataset_groups
+from workflow.analyses import additions
 from workflow.analyses.analysis import Solved
-from workflow.analyses.threads import cases, local
+from workflow.analyses.threads import cases, figures, local, table
 from workflow.data.principal_stress import principal_of_six
 from workflow.study.study import load
 
@@ -43,7 +43,7 @@ def solved(asked):
 
 
 def test_every_curve_of_single_threads_has_its_smeared_one(solved):
-    rows = cases.table(solved)
+    rows = table.table(solved)
     compared = rows[rows["set"] != "picture"]
     assert compared[compared["layers"] == "discrete"]["change [N]"].to_numpy() == pytest.approx(-1)
     assert compared[compared["layers"] == "smeared"]["change [N]"].to_numpy() == pytest.approx(0)
@@ -52,14 +52,14 @@ def test_every_curve_of_single_threads_has_its_smeared_one(solved):
 
 def test_walls_of_silicone_are_those_of_the_claim(solved):
     asked = {entry.case.key for entry in cases.of_claim(load(CONFIG))}
-    change = cases.change_by_wall([one for one in solved if one.asked.case.key in asked])
+    change = table.change_by_wall([one for one in solved if one.asked.case.key in asked])
     assert change.to_dict() == pytest.approx(dict.fromkeys([1.5, 2.0, 2.5, 3.0], -1.0))
 
 
 def test_the_picture_shows_both_rubbers(asked):
     pictures = [Solved(a, with_fields(a, {"corners": CORNER})) for a in asked if a.case.fields_at]
     assert len(pictures) == 4
-    shown = cases.shown(pictures)
+    shown = figures.shown(pictures)
     assert list(shown) == ["NBR", "silicone"]
     assert {entry.asked.tags["layers"] for entry in shown.values()} == {"discrete"}
 
@@ -121,7 +121,7 @@ def test_pictures_say_how_much_higher_the_stress_is(asked, corners):
         fields = made_up(corners)
         fields["stress"] = fields["stress"] * size[str(entry.tags["layers"])]
         solved.append(Solved(entry, with_fields(entry, fields)))
-    rows = cases.table(solved)
+    rows = table.table(solved)
     rows = rows[rows["set"] == "picture"].set_index(["rubber", "layers"])
     assert rows.loc[("NBR", "discrete"), "stress concentration [1]"] == pytest.approx(1.5)
     assert rows.loc[("silicone", "smeared"), "stress concentration [1]"] == pytest.approx(1.0)
@@ -135,5 +135,5 @@ def test_principal_stresses_of_six_components():
 
 
 def test_columns_stay_apart_in_the_dataset(solved):
-    rows = cases.table(solved)
-    assert len(dataset_groups.group(rows)) == len(rows.columns)
+    rows = table.table(solved)
+    assert len(additions.group(rows)) == len(rows.columns)

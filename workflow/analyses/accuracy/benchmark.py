@@ -1,4 +1,4 @@
-"""How long the solves of the accuracy study take on this machine.
+"""How long the solves of the analysis of accuracy take on this machine.
 
 results/cost.csv               medians of seconds by purpose, unknowns, memory, one row per case
 results/tables/benchmark.csv   exponents: how seconds and memory grow with unknowns and with states
@@ -28,7 +28,7 @@ from solver.freefem import Limits, executable
 from solver.solve import solve
 from workflow.analyses import analysis
 from workflow.analyses.accuracy import costs as accuracy_costs
-from workflow.analyses.analysis import StudyCase
+from workflow.analyses.analysis import AnalysisCase
 from workflow.study.errors import StudyError
 
 SETS = ("mesh", "steps", "tolerance")
@@ -41,14 +41,14 @@ STATES = 21
 WARM = 5  # repetitions of a model that takes next to nothing
 
 
-def chosen(study_file: Path) -> list[StudyCase]:
-    """The curves of the study whose cost is of interest, each case once."""
+def chosen(study_file: Path) -> list[AnalysisCase]:
+    """The curves whose cost is of interest, each case once."""
     asked = analysis.cases("accuracy", str(study_file))
     curves = [a for a in asked if a.tags["set"] in SETS and a.tags["quantity"] == "curve"]
     return list({a.case.key: a for a in reversed(curves)}.values())[::-1]
 
 
-def run(cases: Sequence[StudyCase], runs: int, say: Callable[[str], None]) -> pd.DataFrame:
+def run(cases: Sequence[AnalysisCase], runs: int, say: Callable[[str], None]) -> pd.DataFrame:
     """Medians of all costs, one row per case; ``say`` is told how it goes."""
     expected = [expected_seconds(asked) for asked in cases]
     with TemporaryDirectory() as scratch:
@@ -85,7 +85,7 @@ class _Bench:
         self.folder = folder
         self.meshing: dict[str, float] = {}  # CPU seconds by mesh
 
-    def cost(self, asked: StudyCase) -> dict[str, float]:
+    def cost(self, asked: AnalysisCase) -> dict[str, float]:
         """Of one solve."""
         if asked.mesh is None:
             return self._direct(asked)
@@ -96,7 +96,7 @@ class _Bench:
         cost = json.loads(names["cost"].read_text())
         return accuracy_costs.of_run(cost) | {"mesh [s]": self.meshing[asked.mesh]}
 
-    def _mesh(self, asked: StudyCase) -> Path:
+    def _mesh(self, asked: AnalysisCase) -> Path:
         assert asked.mesh is not None
         path = self.folder / asked.mesh
         if not path.exists():
@@ -105,7 +105,7 @@ class _Bench:
             )
         return path
 
-    def _direct(self, asked: StudyCase) -> dict[str, float]:
+    def _direct(self, asked: AnalysisCase) -> dict[str, float]:
         """A model that needs no process of its own, imported already."""
         limits = Limits(wall_time=60, memory=1000)
         solve(asked.case, None, self.folder / "log", limits)
@@ -114,7 +114,7 @@ class _Bench:
             solve(asked.case, None, self.folder / "log", limits)
         return {accuracy_costs.SOLVE: (time.process_time() - start) / WARM}
 
-    def slowness(self, cases: Iterable[StudyCase]) -> float:
+    def slowness(self, cases: Iterable[AnalysisCase]) -> float:
         """Wall seconds of the first membrane, as a multiple of what is expected of it."""
         first = next((asked for asked in cases if asked.case.model == "membrane"), None)
         if first is None:
@@ -125,7 +125,7 @@ class _Bench:
         return (time.monotonic() - start) / expected_seconds(first)
 
 
-def expected_seconds(asked: StudyCase) -> float:
+def expected_seconds(asked: AnalysisCase) -> float:
     """Of one solve of a case, on the machine on which this was written."""
     if asked.case.model not in EXPECTED:
         return 0.3

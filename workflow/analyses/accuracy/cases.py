@@ -16,7 +16,7 @@ this.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from geometry.meridian import MeridianMesh
 from geometry.muscle import Muscle
@@ -41,15 +41,11 @@ from workflow.analyses.accuracy.settings import (
     TOLERANCES,
     TUBE_FAMILY,
 )
-from workflow.analyses.analysis import Solved, StudyCase
+from workflow.analyses.analysis import AnalysisCase
 from workflow.plan.effect_costs import MESHES
 from workflow.plan.mesh_error import PART
 from workflow.plan.plan import plan
 from workflow.study.contents import Study
-
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -77,28 +73,9 @@ class _Setting:
         }
 
 
-def cases(study: Study) -> list[StudyCase]:
+def cases(study: Study) -> list[AnalysisCase]:
     """The curve of every setting, the threshold pressure on every mesh, scenes on finer meshes."""
     return [*_normal(study), *_tube(study), *_scenes(study)]
-
-
-def table(solved: list[Solved]) -> "pd.DataFrame":
-    """One row per setting and curve."""
-    from workflow.analyses.accuracy import table as accuracy_table
-
-    return accuracy_table.rows(solved)
-
-
-def draw(solved: list[Solved], table: "pd.DataFrame") -> dict[str, "Figure"]:
-    """Error against cost, and how errors fall."""
-    from workflow.analyses.accuracy import costs as accuracy_costs
-    from workflow.analyses.accuracy import figures
-
-    costs = accuracy_costs.of_cases(table["case"].dropna().unique())
-    return {
-        "accuracy": figures.overview(table, costs),
-        "accuracy_orders": figures.orders(table),
-    }
 
 
 def stops(step: float = STEP, largest: float = LARGEST) -> tuple[float, ...]:
@@ -135,7 +112,7 @@ def _refined(part: str, refinement: int) -> Numerics:
     return Numerics(**{part: replace(default, refinement=refinement)})
 
 
-def _normal(study: Study) -> Iterator[StudyCase]:
+def _normal(study: Study) -> Iterator[AnalysisCase]:
     """The normal condition with every setting."""
     ours = study.muscles[MUSCLE]
     threshold = LoadPath(
@@ -153,13 +130,13 @@ def _normal(study: Study) -> Iterator[StudyCase]:
         )
         label = f"{setting.model} {setting.name}".strip()
         tags = setting.tags("curve") | {"maps": " ".join(ours.reference)}
-        yield StudyCase(curve, f"{label}, {setting.set}", tags)
+        yield AnalysisCase(curve, f"{label}, {setting.set}", tags)
         if setting.set == "mesh" and setting.model not in ("geometric", "cell"):
             case = replace(curve, path=threshold)
-            yield StudyCase(case, f"{label}, threshold", setting.tags("threshold"))
+            yield AnalysisCase(case, f"{label}, threshold", setting.tags("threshold"))
 
 
-def _tube(study: Study) -> Iterator[StudyCase]:
+def _tube(study: Study) -> Iterator[AnalysisCase]:
     """A bare tube at a stretch of 0.8 and 0.05 MPa: a smooth solution, known exactly."""
     nbr = study.muscles[MUSCLE].rubber
     tube = Muscle(inner_diameter=20, wall_thickness=2, length=4, braid=None)
@@ -177,10 +154,10 @@ def _tube(study: Study) -> Iterator[StudyCase]:
             effects=effects,
             numerics=numerics,
         )
-        yield StudyCase(case, f"bare tube 1/{m}", setting.tags("curve"))
+        yield AnalysisCase(case, f"bare tube 1/{m}", setting.tags("curve"))
 
 
-def _scenes(study: Study) -> Iterator[StudyCase]:
+def _scenes(study: Study) -> Iterator[AnalysisCase]:
     """Every meshed curve of the scenes on its own mesh and on one twice as fine."""
     for planned in plan(study).cases.values():
         case = planned.case
@@ -199,7 +176,7 @@ def _with_mesh(numerics: Numerics, part: str, mesh: MeridianMesh | SectionMesh) 
     return replace(numerics, **changed)
 
 
-def _pair(name: str, case: Case, mesh: MeridianMesh | SectionMesh) -> Iterator[StudyCase]:
+def _pair(name: str, case: Case, mesh: MeridianMesh | SectionMesh) -> Iterator[AnalysisCase]:
     """A curve on a mesh and on one twice as fine."""
     finer = replace(mesh, refinement=2 * mesh.refinement)
     for each in (mesh, finer):
@@ -209,4 +186,4 @@ def _pair(name: str, case: Case, mesh: MeridianMesh | SectionMesh) -> Iterator[S
             "scenes", case.model, name, numerics, case.effects, refinement=each.refinement
         )
         solved = replace(case, numerics=numerics, fields_at=fields)
-        yield StudyCase(solved, f"{name}, mesh 1/{each.refinement}", setting.tags("curve"))
+        yield AnalysisCase(solved, f"{name}, mesh 1/{each.refinement}", setting.tags("curve"))

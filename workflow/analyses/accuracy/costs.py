@@ -1,4 +1,4 @@
-"""What the cases of the accuracy study have cost: seconds by purpose, unknowns, memory.
+"""What the cases of the analysis of accuracy have cost: seconds by purpose, unknowns, memory.
 
 From the benchmark where that has been run (results/cost.csv, medians of several runs one after the
 other), else from the single solve of each case (results/cost/<case>.json), beside which other jobs
@@ -60,7 +60,7 @@ def of_run(cost: dict[str, Any]) -> dict[str, float]:
 
 
 def joined(table: pd.DataFrame, costs: pd.DataFrame) -> pd.DataFrame:
-    """The study's table with the costs of every case, NaN where they are not known."""
+    """The table of the analysis with the costs of every case, NaN where they are not known."""
     return table.join(costs[[name for name in costs if name not in table]], on="case")
 
 

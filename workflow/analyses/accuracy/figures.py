@@ -1,6 +1,7 @@
-"""Figures of the accuracy study: error against cost, where the seconds go, how errors fall."""
+"""Figures of accuracy: error against cost, where the seconds go, how errors fall."""
 
 import textwrap
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,8 +9,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from workflow.analyses.accuracy.costs import MEMORY, PARTS, SOLVE, growth, joined
+from workflow.analyses.accuracy.costs import MEMORY, PARTS, SOLVE, growth, joined, of_cases
 from workflow.analyses.accuracy.settings import MUSCLE, STEPS
+from workflow.analyses.analysis import Solved
 from workflow.figures import style
 from workflow.figures.style import SOFT, SOURCES
 
@@ -58,6 +60,13 @@ FAMILIES = (  # set, model, colour, marker, what it is
     ("butt", "solid", "#d55e00", "s", "solid, bonded sharply"),
 )
 THEORY = {"bare tube, smooth": " (theory: 4)", "membrane": " (theory: 4)"}  # twice the elements'
+
+
+def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Error against cost, and how errors fall."""
+    rows = tables["accuracy"]
+    costs = of_cases(rows["case"].dropna().unique())
+    return {"accuracy": overview(rows, costs), "accuracy_orders": orders(rows)}
 
 
 def overview(table: pd.DataFrame, costs: pd.DataFrame) -> Figure:

@@ -1,4 +1,4 @@
-"""What the accuracy study varies, and where: the normal condition, meshes, steps, tolerances."""
+"""What accuracy is measured by: the normal condition, meshes, steps, tolerances."""
 
 from geometry.cell import CellMesh
 from geometry.meridian import MeridianMesh

@@ -1,4 +1,4 @@
-"""The table of the accuracy study: one row per setting, all errors as shares.
+"""The table of the analysis of accuracy: one row per setting, all errors as shares.
 
 Columns, where they say something of a row:
 
@@ -13,7 +13,7 @@ For scenes the error is that of a pair of meshes; for steps and tolerances it is
 of the strictest setting on the same mesh.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -34,8 +34,14 @@ from workflow.analyses.accuracy.settings import PRESSURE, STEP
 from workflow.analyses.analysis import Solved
 from workflow.data import deviation, reference
 from workflow.plan.mesh_error import PART
+from workflow.study.contents import Study
 
 FULLEST = "solid"
+
+
+def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
+    """One row per setting and curve."""
+    return {"accuracy": rows(solved)}
 
 
 def rows(solved: Iterable[Solved]) -> pd.DataFrame:

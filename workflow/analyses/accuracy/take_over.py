@@ -1,4 +1,4 @@
-"""The errors that the accuracy study has found, taken over into workflow/plan/mesh_error.csv."""
+"""Errors found by the analysis of accuracy, taken over into workflow/plan/mesh_error.csv."""
 
 import csv
 import time
@@ -10,17 +10,17 @@ from workflow.plan.mesh_error import COLUMNS, FILE
 from workflow.study.errors import StudyError
 
 
-def take_over(study_table: Path, path: Path = FILE) -> None:
-    """Write the table from that of the accuracy study.
+def take_over(table_file: Path, path: Path = FILE) -> None:
+    """Write the table from that of the analysis of accuracy.
 
     Raises
     ------
     StudyError
-        If the study has not been evaluated.
+        If the analysis has not been evaluated.
     """
-    if not study_table.exists():
-        raise StudyError(f"{study_table}: there is no such table; run snakemake accuracy")
-    with study_table.open(newline="", encoding="utf-8") as stream:
+    if not table_file.exists():
+        raise StudyError(f"{table_file}: there is no such table; run snakemake accuracy")
+    with table_file.open(newline="", encoding="utf-8") as stream:
         rows = [row for row in csv.DictReader(stream) if row["set"] == "scenes"]
     families: dict[tuple[str, ...], list[dict[str, str]]] = {}
     for row in rows:
@@ -37,6 +37,6 @@ def take_over(study_table: Path, path: Path = FILE) -> None:
 
 
 def _written(row: dict[str, str]) -> list[str]:
-    """Settings of a row of the study, numbers in their shortest form."""
+    """Settings of a row of the table, numbers in their shortest form."""
     steps = (f"{float(row[name]):g}" for name in ("cap_step", "growth", "body_step"))
     return [row["model"], row["end"], *steps, row["rows"]]

@@ -10,7 +10,7 @@ solid, which shows whether that model was good enough.
 
 import math
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -54,7 +54,12 @@ class Calibration:
     @property
     def values(self) -> dict[str, float]:
         """Fitted values by key of the study file, four digits."""
-        return {f.parameter.name: float(f"{f.value:.4g}") for f in self.fitted}
+        return rounded((f.parameter.name, f.value) for f in self.fitted)
+
+
+def rounded(values: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """Fitted values as they are used and written."""
+    return {name: float(f"{value:.4g}") for name, value in values}
 
 
 def calibrate(study: Study, name: str) -> Calibration:

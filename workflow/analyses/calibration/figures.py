@@ -1,10 +1,12 @@
 """Forces before and after a calibration, over those it was fitted to and those it was not."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
+from workflow.analyses.analysis import Solved
 from workflow.figures.style import FULL, SERIES, labelled, legend, panels, percent
 
 REFERENCE = {"color": "0.3", "marker": "s", "linestyle": "none", "label": "reference"}
@@ -21,18 +23,24 @@ CURVES = {  # values, whether the model of the fit: style
 CORNER = {"ha": "right", "va": "top", "fontsize": 7.5}
 
 
-def draw(tables: dict[str, pd.DataFrame], models: dict[str, str]) -> Figure:
-    """One row per calibration, one column per pressure; tables as of ``Calibration.states``."""
-    columns = max(table["pressure"].nunique() for table in tables.values())
-    count = len(tables)
+def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """The one figure."""
+    return {"calibration": overview(tables["calibration_states"])}
+
+
+def overview(states: pd.DataFrame) -> Figure:
+    """One row per calibration, one column per pressure."""
+    calibrations = list(states.groupby("calibration", sort=False))
+    columns = max(table["pressure"].nunique() for _, table in calibrations)
+    count = len(calibrations)
     shared: dict[str, Any] = {"sharex": True, "sharey": "row", "gap": (0.16, 0.4)}
     figure, axes = panels(FULL, 1.1 + 1.7 * count, count, columns, **shared)
-    for row, (name, table) in zip(axes, tables.items(), strict=True):
+    for row, (name, table) in zip(axes, calibrations, strict=True):
         for ax, (pressure, here) in zip(row, table.groupby("pressure"), strict=False):
             first = here.drop_duplicates("contraction")
             ax.plot(first["contraction"], first["reference"], **REFERENCE)
             for (when, of_fit), style in CURVES.items():
-                of_model = (here["model"] == models[name]) == of_fit
+                of_model = (here["model"] == here["fitted_by"]) == of_fit
                 chosen = here[(here["values"] == when) & of_model]
                 ax.plot(chosen["contraction"], chosen["force"], **style)
             ax.axhline(0, color="black", linewidth=0.7)

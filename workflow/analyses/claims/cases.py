@@ -6,41 +6,30 @@ makes one dataset, of which the claims ask everything. What single threads chang
 of silicone is computed by the cell and is a group of the dataset of the study's EA.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
-
-import numpy as np
-import pandas as pd
-import xarray as xr
 
 from solver.material import Thread
-from solver.status import StateStatus
-from workflow.analyses.analysis import Solved, StudyCase
+from workflow.analyses.analysis import AnalysisCase
 from workflow.analyses.claims.claim import GEOMETRIC, MUSCLE
-from workflow.analyses.claims.scorecard import SWEPT_MODEL, scorecard
-from workflow.analyses.claims.stress import SUMMARY, summary
+from workflow.analyses.claims.scorecard import SWEPT_MODEL
 from workflow.analyses.threads import cases as threads
-from workflow.data import dataset, paper
-from workflow.data.records import Curve
+from workflow.data import paper
 from workflow.plan.plan import Place, plan
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
 from workflow.study.schema import Scene
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 STIFFNESSES = (50.0, 150.0, 315.0, 594.0, 650.0)  # N; 594 is the thickest thread that has room
 
 
 @dataclass(frozen=True)
-class PlacedCase(StudyCase):
+class PlacedCase(AnalysisCase):
     """A case at its place in the dataset of one EA."""
 
     place: Place | None = None
     muscle: StudiedMuscle | None = None
-    stiffness: float = np.nan  # N
+    stiffness: float = float("nan")  # N
     own: bool = False  # whether this is the study's EA
 
 
@@ -105,69 +94,5 @@ def _stiffened(study: Study, stiffness: float) -> Study:
     return replace(study, muscles=muscles, scenes={n: s for n, s in scenes.items() if s.models})
 
 
-def _asked(solved: Solved) -> PlacedCase:
-    """The case, which is one of this study."""
-    assert isinstance(solved.asked, PlacedCase)
-    return solved.asked
-
-
 def _fast(scene: Scene, model: str) -> bool:
     return model in (GEOMETRIC, SWEPT_MODEL) or "stress" in scene.quantities
-
-
-def table(solved: Sequence[Solved]) -> pd.DataFrame:
-    """The scorecard."""
-    trees, own = {}, np.nan
-    for stiffness in sorted({_asked(s).stiffness for s in solved}):
-        here = [s for s in solved if _asked(s).stiffness == stiffness]
-        own = stiffness if _asked(here[0]).own else own
-        trees[stiffness] = tree(here)
-    return scorecard(trees, own)
-
-
-def tree(all_solved: Sequence[Solved]) -> xr.DataTree:
-    """The dataset of some cases, with the groups of the stress and of single threads."""
-    muscles, curves, solved, cells = {}, [], [], []
-    for each in all_solved:
-        asked = _asked(each)
-        if asked.place is None or asked.muscle is None:
-            cells.append(each)
-            continue
-        solved.append(each)
-        muscles[asked.place.muscle] = asked.muscle
-        case, stops = asked.case, asked.case.path.stops
-        curves.append(Curve(asked.place, case.key, case, each.solution, stops))
-    found = dataset.build(curves, muscles)
-    states = [state for s in solved for state in _stresses(s)]
-    if states:
-        rows = pd.DataFrame(states).set_index(
-            ["muscle", "model", "variant", "pressure", "contraction"]
-        )
-        found["stress"] = xr.DataTree(rows.to_xarray())
-    if cells:
-        change = threads.change_by_wall(cells).rename_axis("wall").to_xarray()
-        found["threads"] = xr.DataTree(xr.Dataset({"change": change}))
-    return found
-
-
-def _stresses(solved: Solved) -> Iterator[dict[str, str | float]]:
-    """Summaries of the states that have a stress."""
-    asked, path = _asked(solved), solved.asked.case.path
-    assert asked.place is not None
-    for number, fields in solved.solution.fields.items():
-        if "stress" in fields and solved.solution.state_status[number] is StateStatus.CONVERGED:
-            muscle = asked.case.muscle
-            numbers = summary(fields, muscle.inner_diameter, muscle.length)
-            yield {
-                "muscle": asked.place.muscle,
-                "model": asked.place.model,
-                "variant": asked.place.variant,
-                "pressure": path.held,
-                "contraction": path.stops[number],
-                **dict(zip(SUMMARY, numbers, strict=True)),
-            }
-
-
-def draw(solved: Sequence[Solved], table: pd.DataFrame) -> dict[str, "Figure"]:
-    """None: what there is to say stands in words."""
-    return {}

@@ -16,8 +16,8 @@ import pandas as pd
 import xarray as xr
 
 from solver.load_path import CONTRACTION_LIMITS
-from workflow.analyses.claims import CLAIMS, judge
 from workflow.analyses.claims.claim import GEOMETRIC, Claim, Data, Finding, Verdict
+from workflow.analyses.claims.judge import CLAIMS, judge
 
 MODELS = ("solid", "membrane")  # the fullest first
 SWEPT_MODEL = "membrane"  # of the datasets with other EA

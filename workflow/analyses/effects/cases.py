@@ -6,21 +6,16 @@ in the cell, against its smeared layers. The regimes are the normal condition an
 is followed at constant pressure, contraction and load, the dear cell at constant pressure only.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from solver.case import Case
 from solver.effects import Effects, Layers, Rubber, Stretch, ThreadLaw, Twist, Volume, Wall
 from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
 from solver.numerics import Numerics
-from workflow.analyses.analysis import Solved, StudyCase
-from workflow.analyses.effects.table import table
+from workflow.analyses.analysis import AnalysisCase
 from workflow.plan.effect_costs import MESHES
 from workflow.study.contents import Study
-
-__all__ = ["cases", "draw", "table"]
 
 MUSCLE, THICK_SILICONE = "dmsp20", "dmsp20_t3_silicone"  # of the study file
 STIFF = 20e3  # N, EA
@@ -88,17 +83,10 @@ SETUPS = {
 }
 
 
-def draw(solved: Sequence[Solved], rows: Any) -> dict[str, Any]:
-    """The figure of the study; matplotlib is imported only for it."""
-    from workflow.analyses.effects import figures
-
-    return {"effects": figures.overview(rows)}
-
-
-def cases(study: Study) -> list[StudyCase]:
+def cases(study: Study) -> list[AnalysisCase]:
     """Every setup along every path of every regime."""
     return [
-        StudyCase(
+        AnalysisCase(
             _case(study, regime, setup, path),
             f"{name}, {setup_name}, {path.kind}",
             {"regime": name, "path": path.kind.value, "setup": setup_name},

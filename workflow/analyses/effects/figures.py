@@ -1,8 +1,11 @@
-"""Figure of the study of effects: what leaving one out changes, and what it saves, by regime."""
+"""Figure of the analysis of effects: what leaving one out changes, and what it saves, by regime."""
+
+from collections.abc import Mapping, Sequence
 
 import pandas as pd
 from matplotlib.figure import Figure
 
+from workflow.analyses.analysis import Solved
 from workflow.figures import style
 
 REGIMES = {
@@ -14,6 +17,11 @@ REGIMES = {
 }
 NAMES = {"all but pressure on the net": "all but the net (Eq. 1)"}
 SMALLEST = 1e-5  # what is less is drawn there
+
+
+def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """The one figure."""
+    return {"effects": overview(tables["effects"])}
 
 
 def overview(table: pd.DataFrame) -> Figure:

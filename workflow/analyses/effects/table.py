@@ -1,4 +1,4 @@
-"""What becomes of the study of effects: one row for every effect, regime and path."""
+"""What becomes of the analysis of effects: one row for every effect, regime and path."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from solver.record import Solution
 from solver.status import StateStatus
 from workflow.analyses.analysis import Solved
+from workflow.study.contents import Study
 
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 SWITCHES = {  # what is left out: (setup with it, setup without); see cases.py
@@ -27,6 +28,11 @@ SWITCHES = {  # what is left out: (setup with it, setup without); see cases.py
     "discrete_threads": ("cell", "cell, smeared"),
     "all but pressure on the net": ("cylinder", "geometric"),
 }
+
+
+def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
+    """Changes and savings."""
+    return {"effects": table(solved)}
 
 
 def table(solved: Sequence[Solved]) -> pd.DataFrame:

@@ -7,9 +7,8 @@ as fine with steps half as long.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 from scipy.stats import qmc
@@ -23,8 +22,7 @@ from solver.load_path import LoadPath, PathKind
 from solver.material import MooneyRivlin, Thread
 from solver.models.geometric import equation
 from solver.numerics import Numerics
-from workflow.analyses.analysis import Solved, StudyCase
-from workflow.analyses.robustness.table import notes, table
+from workflow.analyses.analysis import AnalysisCase
 from workflow.study.contents import Study
 
 MUSCLE, SILICONE = "dmsp20", "dmsp20_silicone"  # of the study file
@@ -58,22 +56,10 @@ LIMITS = {  # of the hypercube: name -> (low, high, logarithmic)
     "pressure": (0.01, 0.8, False),  # MPa
     "path": (0, 5, False),  # 0 to 3 isobaric, to 4 isometric, to 5 isotonic
 }
-__all__ = ["cases", "draw", "notes", "table"]
-
 LAYERS = (0.15, 0.45)  # depth of the layers, shares of the wall
 
 
-def draw(solved: Sequence[Solved], rows: Any) -> dict[str, Any]:
-    """The figures of the study; matplotlib is imported only for them."""
-    from workflow.analyses.robustness import figures
-
-    return {
-        "robustness": figures.overview(rows),
-        "robustness_worst": figures.worst(solved, rows),
-    }
-
-
-def cases(study: Study) -> list[StudyCase]:
+def cases(study: Study) -> list[AnalysisCase]:
     """Named cases by mesh, their membranes, the hypercube and its repeated tenth."""
     return [*_named(study), *_hypercube()[0]]
 
@@ -126,7 +112,7 @@ def _hard_cases(study: Study) -> dict[str, _Hard]:
     return hard
 
 
-def _named(study: Study) -> Iterator[StudyCase]:
+def _named(study: Study) -> Iterator[AnalysisCase]:
     ours = study.muscles[MUSCLE]
     assert ours.thread is not None
     for name, hard in _hard_cases(study).items():
@@ -143,10 +129,10 @@ def _named(study: Study) -> Iterator[StudyCase]:
                 fields_at=(CONTRACTIONS[-1],) if mesh == min(MESHES) else (),
             )
             tags: dict[str, str | float] = {"set": "named", "name": name, "mesh": mesh}
-            yield StudyCase(case, f"{name}, mesh {mesh}", tags)
+            yield AnalysisCase(case, f"{name}, mesh {mesh}", tags)
         membrane = replace(case, model="membrane", fields_at=(), numerics=_membrane_mesh(hard))
         tags = {"set": "named", "name": name, "mesh": max(MESHES)}
-        yield StudyCase(membrane, f"{name}, membrane", tags)
+        yield AnalysisCase(membrane, f"{name}, membrane", tags)
 
 
 def _membrane_mesh(hard: _Hard) -> Numerics:
@@ -155,7 +141,7 @@ def _membrane_mesh(hard: _Hard) -> Numerics:
     return Numerics(meridian=MeridianMesh(refinement=3))
 
 
-def _hypercube() -> tuple[list[StudyCase], int]:
+def _hypercube() -> tuple[list[AnalysisCase], int]:
     """The samples, and how many had to be drawn again because they cannot be built."""
     points = qmc.LatinHypercube(len(LIMITS), seed=SEED).random(SAMPLES)
     again = np.random.default_rng(SEED)
@@ -166,13 +152,13 @@ def _hypercube() -> tuple[list[StudyCase], int]:
             redrawn += 1
             case = _sample(again.random(len(LIMITS)))
         tags: dict[str, str | float] = {"set": "hypercube", "name": f"{number}", "mesh": 1}
-        found.append(StudyCase(case, f"sample {number}", tags))
+        found.append(AnalysisCase(case, f"sample {number}", tags))
         membrane = replace(case, model="membrane", fields_at=())
-        found.append(StudyCase(membrane, f"sample {number}, membrane", tags))
+        found.append(AnalysisCase(membrane, f"sample {number}, membrane", tags))
         if number % REPEATED == 0:
             twice = Numerics(section=replace(HYPERCUBE_MESH, refinement=2))
             finer = replace(case, path=_halved(case.path), numerics=twice)
-            found.append(StudyCase(finer, f"sample {number}, finer", tags | {"mesh": 2}))
+            found.append(AnalysisCase(finer, f"sample {number}, finer", tags | {"mesh": 2}))
     return found, redrawn
 
 

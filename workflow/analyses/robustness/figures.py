@@ -1,6 +1,6 @@
-"""Figures of the robustness study: where which status, and what the worst states look like."""
+"""Figures of hard cases: where which status, and what the worst states look like."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,12 @@ MESH_MARKS = {1: "o", 2: "s", 3: "D"}
 GOOD_DET, GOOD_MESH = 0.5, 1e-3  # what the named cases are held to
 WORST = 6
 OTHER = {"color": "black", "marker": "d"}  # a status without a look
+
+
+def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Both figures."""
+    rows = tables["robustness"]
+    return {"robustness": overview(rows), "robustness_worst": worst(solved, rows)}
 
 
 def overview(table: pd.DataFrame) -> Figure:

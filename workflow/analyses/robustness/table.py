@@ -1,4 +1,4 @@
-"""What becomes of the robustness study: one row per case, and how far equal cases agree."""
+"""What becomes of hard cases: one row per case, and how far equal cases agree."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from solver.status import CaseStatus, StateStatus
 from workflow.analyses.analysis import Solved
+from workflow.study.contents import Study
 
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 APART = 0.03  # share of the largest force from which a membrane is far from its solid
@@ -27,6 +28,12 @@ NOTE_COLUMNS = [
     "against",
     "cause",
 ]
+
+
+def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
+    """Every case, and those that a reader must know."""
+    rows = table(solved)
+    return {"robustness": rows, "robustness_notes": notes(rows)}
 
 
 def table(solved: Sequence[Solved]) -> pd.DataFrame:

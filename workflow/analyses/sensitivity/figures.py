@@ -1,10 +1,12 @@
 """The sensitivities: local ones by two models above, shares of variance below."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
+from workflow.analyses.analysis import Solved
 from workflow.figures.style import FULL, SERIES, SOFT, grid, labelled, legend, percent
 
 OUTPUTS = {
@@ -28,7 +30,12 @@ INPUTS = {
 BAR = 0.19  # inch
 
 
-def draw(table: pd.DataFrame) -> Figure:
+def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """The one figure."""
+    return {"sensitivity": overview(tables["sensitivity"])}
+
+
+def overview(table: pd.DataFrame) -> Figure:
     """One column per output, one row per analysis."""
     analyses = list(table["analysis"].unique())
     counts = [table[table["analysis"] == a]["input"].nunique() for a in analyses]

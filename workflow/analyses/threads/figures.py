@@ -1,5 +1,6 @@
-"""Figures of the study of discrete threads: a cut through the deformed wall, and the correction."""
+"""Figures of discrete threads: a cut through the deformed wall, and the correction."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 
 from geometry.cell import Box
+from solver.effects import Layers
 from workflow.analyses.analysis import Solved
 from workflow.analyses.threads.local import nodes
 from workflow.figures import style
@@ -28,6 +30,23 @@ MESH_STYLE: dict[str, dict[str, Any]] = {
 }
 COLOURS = {"NBR": "black", "silicone": "#d55e00"}
 MARKERS = {0.2: "o", 0.3: "s", 0.4: "^"}
+
+
+def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Both figures."""
+    rows = tables["threads"]
+    return {"threads": local(shown(solved), rows), "threads_correction": correction(rows)}
+
+
+def shown(solved: Sequence[Solved]) -> dict[str, Solved]:
+    """By rubber the case with single threads whose fields the picture shows, where it has them."""
+    return {
+        str(entry.asked.tags["rubber"]): entry
+        for entry in solved
+        if entry.asked.case.fields_at
+        and entry.solution.fields
+        and entry.asked.tags["layers"] == Layers.DISCRETE
+    }
 
 
 def local(shown: dict[str, Solved], rows: pd.DataFrame) -> Figure:

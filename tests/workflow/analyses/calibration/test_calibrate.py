@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geometry.muscle import Braid
-from workflow.analyses.calibration import calibrate, snippet
+from workflow.analyses.calibration import calibrate, files
 from workflow.analyses.calibration.calibrate import THREAD_MODULUS, thickest
 from workflow.analyses.calibration.fit import Fitted, Parameter
 from workflow.analyses.calibration.forward_model import ForwardModel
@@ -90,7 +90,8 @@ def test_rubber_is_fitted_too_and_the_entry_is_a_muscle(study, forces_of):
     given = study(fitting)
     found = calibrate.calibrate(given, "mine")
     assert found.values == pytest.approx({"thread_stiffness": 400, "c10": 0.3}, rel=0.01)
-    lines = [line for line in snippet.text(found, given).splitlines() if not line.startswith("#")]
+    written = files.text(given, "mine", found.values).splitlines()
+    lines = [line for line in written if not line.startswith("#")]
     text = STUDY
     for heading, line in zip(lines[::2], lines[1::2], strict=True):
         text = text.replace(f"{heading}\n", f"{heading}\n{line}\n")

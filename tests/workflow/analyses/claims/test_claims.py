@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from workflow.analyses.claims import CLAIMS, Data, Verdict, judge
-from workflow.analyses.claims.claim import STEPS
+from workflow.analyses.claims.claim import STEPS, Data, Verdict
 from workflow.analyses.claims.factors import SILICONE, WALLS
+from workflow.analyses.claims.judge import CLAIMS, judge
 
 from .made_up import EQUATION, FORCE, group, isobaric, isometric, isotonic, stress, with_map
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from workflow.analyses.claims import CLAIMS
+from workflow.analyses.claims.judge import CLAIMS
 from workflow.analyses.claims.scorecard import SHARE, scorecard, shifted
 
 from . import made_up

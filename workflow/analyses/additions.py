@@ -1,30 +1,37 @@
-"""Tables of studies as groups of ``results/dataset.nc``: /robustness, /threads.
+"""What an analysis adds to the results of the scenes: a group of the dataset, and its failed cases.
 
-A study is asked for apart from the scenes, so it comes to the dataset from two sides: gathering
-takes over the tables that are there, and a study that ends adds its own to a dataset that is there.
-Both give the same bytes. A group is as old as the last run of its study: after a change of the
-study file ask for the study again.
+An analysis is asked for apart from the scenes, so it comes to results/dataset.nc and failures.csv
+from two sides: gathering takes over the tables that are there, and an analysis that ends adds its
+own to a dataset, and to failures, that are there. Both give the same bytes. What stands there is as
+old as the last run of the analysis: after a change of the study file ask for it again.
 """
 
 import fcntl
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pandas as pd
 import xarray as xr
 
-from workflow.analyses.analysis import IN_DATASET
+from workflow.analyses import analysis
 from workflow.data import dataset
+from workflow.run import failures
 
 TABLES = Path("results/tables")
 
 
-def found(tables: Path = TABLES) -> dict[str, xr.Dataset]:
-    """The groups of all tables that are there, by name."""
-    files = {name: tables / f"{name}.csv" for name in IN_DATASET}
+def failed(tables: Path = TABLES) -> list[Path]:
+    """The tables of failed cases that are there."""
+    files = [tables / analysis.failures_of(name) for name in analysis.names()]
+    return [file for file in files if file.exists()]
+
+
+def found(names: Iterable[str], tables: Path = TABLES) -> dict[str, xr.Dataset]:
+    """The groups of those analyses whose tables are there, by name."""
+    files = {name: tables / f"{name}.csv" for name in names}
     return {name: group(pd.read_csv(file)) for name, file in files.items() if file.exists()}
 
 
@@ -47,14 +54,10 @@ def group(table: pd.DataFrame) -> xr.Dataset:
 
 
 def add(name: str, table: Path, to: Path) -> None:
-    """Add a study's table to a dataset, if both are there.
-
-    The time of the dataset stays: nothing that was made of it must be made again.
-    """
-    if name not in IN_DATASET or not to.exists():
+    """Add the table of an analysis to a dataset, if that is there."""
+    if not to.exists():
         return
-    with alone(to):
-        times = to.stat()
+    with alone(to), same_time(to):
         with xr.open_datatree(to, engine="h5netcdf") as tree:
             whole = tree.load()
         groups = {
@@ -62,7 +65,22 @@ def add(name: str, table: Path, to: Path) -> None:
         }
         groups[f"/{name}"] = group(pd.read_csv(table))
         dataset.write(xr.DataTree.from_dict(dict(sorted(groups.items()))), to)
-        os.utime(to, ns=(times.st_atime_ns, times.st_mtime_ns))
+
+
+def add_failures(to: Path, tables: Path) -> None:
+    """Add the failed cases of all analyses to a table of those of the scenes, if that is there."""
+    if not to.exists():
+        return
+    with alone(to), same_time(to):
+        failures.add(to, failed(tables))
+
+
+@contextmanager
+def same_time(path: Path) -> Iterator[None]:
+    """Let a file keep its time: nothing that was made of it must be made again."""
+    times = path.stat()
+    yield
+    os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
 
 
 @contextmanager

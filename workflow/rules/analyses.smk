@@ -1,0 +1,42 @@
+# Analyses of the models, each a target of its name: snakemake --cores 2 robustness
+#
+#   in   the records of its cases, files of the user; workflow/analyses/<name>/
+#   out  results/tables/<name>.csv            and others beside it
+#        results/tables/<name>_failures.csv   cases that did not work out
+#        results/figures/<...>.png, .svg
+#        results/<name>/<...>                 other files, of some
+#        a group of results/dataset.nc, of some; rows of results/tables/failures.csv
+#
+# What each of these is for one analysis stands in its folder (workflow/analyses/analysis.py).
+
+for each in ANALYSES.values():
+
+    rule:
+        name:
+            each.target or each.name
+        input:
+            records=lambda wildcards, name=each.name: map(record_of, cases_of_analysis(name)),
+            files=each.inputs(PLAN.study),
+            sources=sources("workflow.programs.analysis", *each.modules),
+            # Added to, not read. Not ancient(): with that Snakemake (9.27) leaves the analysis out of
+            # a run in which the dataset is gathered again, even where its outputs are missing.
+            dataset="results/dataset.nc" if each.in_dataset else [],
+        output:
+            table=f"results/tables/{each.name}.csv",
+            others=[f"results/tables/{table}.csv" for table in each.tables if table != each.name],
+            failures=[f"results/tables/{each.failures}"] if each.solves_cases else [],
+            files=[f"results/{each.name}/{file}" for file in each.files(PLAN.study)],
+            figures=expand(
+                "results/figures/{figure}.{kind}", figure=each.figures, kind=["png", "svg"]
+            ),
+        log:
+            f"results/logs/analyses/{each.name}.log",
+        params:
+            study=STUDY,
+            name=each.name,
+            asked=lambda wildcards, name=each.name: ANALYSES[name].digest(PLAN.study),
+        message:
+            f"Evaluating the analysis {each.name}"
+        shell:
+            "python -m workflow analysis --study {params.study:q} --name {params.name:q}"
+            " --table {output.table:q} > {log:q} 2>&1"
