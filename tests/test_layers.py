@@ -35,9 +35,11 @@ def modules() -> dict[str, ast.Module]:
 
 
 def imports(tree: ast.Module) -> set[str]:
-    """All that a module imports, also late or for types only: ``a.b.c`` for ``c`` of ``a.b``."""
+    """All that a module imports, also late or by name: ``a.b.c`` for ``c`` of ``a.b``."""
     found = set()
     for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith("import_module"):
+            found |= {a.value for a in node.args if isinstance(a, ast.Constant)}
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):

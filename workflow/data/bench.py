@@ -2,6 +2,7 @@
 
 import csv
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -10,11 +11,12 @@ from numpy.typing import NDArray
 from workflow.data import reference
 from workflow.data.reference import CONTRACTIONS, ForceMap
 from workflow.study import user_file
-from workflow.study.errors import StudyError, choices
+from workflow.study.contents import Study
+from workflow.study.errors import StudyError, choices, shown
 
 COLUMNS = ("pressure_MPa", "force_N")
 PLACES = ("contraction", "length_mm")  # one of them
-FURTHEST = 0.2  # contraction, as in workflow/deviation.py
+FURTHEST = 0.2  # contraction, as in workflow/data/deviation.py
 FEW = 5  # points of a curve
 
 
@@ -58,6 +60,43 @@ def stops(found: ForceMap, pressure: float) -> NDArray[np.float64]:
         own = np.union1d(own, CONTRACTIONS)
     own = own[(own >= 0) & (own <= FURTHEST)]
     return own[found.inside(own, pressure)]
+
+
+def refused(study: Study) -> Iterator[StudyError]:
+    """Calibrations whose forces are not there, or not where they are asked for."""
+    for name in study.calibration:
+        yield from _refused(study, name)
+
+
+def _refused(study: Study, name: str) -> Iterator[StudyError]:
+    source, entry, keys = study.source, study.calibration[name], ("calibration", name)
+    place, named = (*keys, "reference"), entry.reference
+    assert named is not None  # else the calibration is refused by the study itself
+    try:
+        found = read(named, study.muscles[entry.muscle].muscle.length)
+    except StudyError as error:
+        given = f"{source.place(place)} = {shown(named)} is refused"
+        yield StudyError(f"{given}\n  {error}", source.line(place) or 0, place)
+        return
+    count = 0
+    pressures = ", ".join(f"{p:g}" for p in found.pressures[:12])
+    for key in ("fit_pressure", "report_pressure"):
+        if key == "report_pressure" and not source.has((*keys, key)):
+            continue  # those that stand where none are given are reported as far as there are any
+        for pressure in getattr(entry, key):
+            here = len(stops(found, pressure))
+            count += here if key == "fit_pressure" else 0
+            if not here:
+                allowed = (
+                    f"pressures within {pressures} MPa; the reference has no force at "
+                    f"{pressure:g} MPa between 0 and {100 * FURTHEST:g} %"
+                )
+                at = (*keys, key) if source.has((*keys, key)) else place
+                yield source.refuse(at, pressure if at[-1] == key else named, allowed)
+    if 0 < count <= len(entry.fit):
+        at = (*keys, "fit") if source.has((*keys, "fit")) else place
+        allowed = f"fewer values than there are forces; {named} has {count} of them here"
+        yield source.refuse(at, list(entry.fit), allowed)
 
 
 def _point(path: Path, number: int, row: dict[str, str], length: float) -> tuple[float, ...]:

@@ -6,7 +6,7 @@ solved once, however many figures show it.
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -18,7 +18,7 @@ from solver.case import MESHED, NETS, Case, digest
 from solver.load_path import LoadPath
 from workflow.plan import model_choice
 from workflow.study.contents import Study, Variant
-from workflow.study.errors import Findings
+from workflow.study.errors import Findings, StudyError
 from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
 from workflow.study.study import load
 
@@ -127,8 +127,12 @@ class _Wish:
         return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)))
 
 
-def read(path: Path | str) -> Plan:
+def read(path: Path | str, *checks: Callable[[Study], Iterable[StudyError]]) -> Plan:
     """The plan of a study file.
+
+    Parameters
+    ----------
+    checks : what else to look at, for a caller that knows more than a plan does
 
     Raises
     ------
@@ -136,7 +140,10 @@ def read(path: Path | str) -> Plan:
         With all that is wrong with the file, in its entries and in the cases that they make.
     """
     findings = Findings()
-    made = plan(load(path, findings), findings)
+    study = load(path, findings)
+    made = plan(study, findings)
+    for check in checks:
+        findings.no_more(check(study))
     findings.say()
     return made
 

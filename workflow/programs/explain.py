@@ -3,8 +3,10 @@
 import argparse
 import sys
 
+from workflow.data import bench
 from workflow.plan import explain
-from workflow.programs import add_study, plan_of
+from workflow.plan.plan import read
+from workflow.programs import add_study
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -14,7 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Print it."""
-    plan = plan_of(given)
+    plan = read(given.study, bench.refused)
     for line in plan.study.warnings:
         print(f"warning: {line}", file=sys.stderr)
     for line in explain.lines(plan):

@@ -18,7 +18,7 @@ sys.path.insert(0, CHECKOUT)
 from solver.case import MODELS, digest
 from workflow.analyses import analysis
 from workflow.analyses.registry import ANALYSES
-from workflow.data import paraview
+from workflow.data import bench, paraview
 from workflow.plan.plan import read
 from workflow.run import sources as closure
 from workflow.study.errors import StudyError
@@ -35,7 +35,7 @@ shell.prefix(f"set -euo pipefail; export {SETTINGS} OPENBLAS_NUM_THREADS=1; ")
 
 try:
     STUDY = study_file(config)
-    PLAN = read(STUDY)
+    PLAN = read(STUDY, bench.refused)
 except StudyError as error:
     sys.exit(str(error))  # the message and no traceback
 for line in PLAN.study.warnings:

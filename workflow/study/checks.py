@@ -1,6 +1,5 @@
 """What must fit together in a study before anything runs, and what of it is unusual."""
 
-import importlib
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -107,7 +106,10 @@ def _values(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
 
 
 def calibration(study: Study, name: str) -> Iterator[StudyError]:
-    """A muscle with threads, bounds within which something can be fitted, and forces to fit to."""
+    """A muscle with threads, bounds within which something can be fitted, and a name of forces.
+
+    The forces themselves are looked at by ``workflow/data/bench.py``.
+    """
     source, entry, keys = study.source, study.calibration[name], ("calibration", name)
     made, muscles = study.muscles.get(entry.muscle), source.names("muscles")
     if entry.muscle not in muscles:
@@ -123,47 +125,12 @@ def calibration(study: Study, name: str) -> Iterator[StudyError]:
         if min(getattr(entry, key)) <= 0:
             positive = False
             yield source.refuse((*keys, key), list(getattr(entry, key)), "pressures > 0")
-    if made is not None and made.thread is not None and positive:
-        yield from _forces(source, keys, entry, made)
-        yield from _fitted(source, keys, entry, made)
-
-
-def _forces(
-    source: Source, keys: Keys, entry: CalibrationEntry, made: StudiedMuscle
-) -> Iterator[StudyError]:
-    """A reference that is not there, or has no forces where they are asked for."""
-    # By name, and late: what is looked at before anything runs is no source of what runs.
-    bench = importlib.import_module("workflow.data.bench")
-    place = (*keys, "reference")
+    if made is None or made.thread is None or not positive:
+        return
     if entry.reference is None:
         allowed = f"{', '.join(FORCE_MAPS)} or a .csv file; {entry.muscle} has no map of its own"
-        yield source.refuse(place, None, allowed)
-        return
-    try:
-        found = bench.read(entry.reference, made.muscle.length)
-    except StudyError as error:
-        given = f"{source.place(place)} = {shown(entry.reference)} is refused"
-        yield StudyError(f"{given}\n  {error}", source.line(place) or 0, place)
-        return
-    count = 0
-    pressures = ", ".join(f"{p:g}" for p in found.pressures[:12])
-    for key in ("fit_pressure", "report_pressure"):
-        if key == "report_pressure" and not source.has((*keys, key)):
-            continue  # those that stand where none are given are reported as far as there are any
-        for pressure in getattr(entry, key):
-            stops = len(bench.stops(found, pressure))
-            count += stops if key == "fit_pressure" else 0
-            if not stops:
-                allowed = (
-                    f"pressures within {pressures} MPa; the reference has no force at "
-                    f"{pressure:g} MPa between 0 and {100 * bench.FURTHEST:g} %"
-                )
-                at = (*keys, key) if source.has((*keys, key)) else place
-                yield source.refuse(at, pressure if at[-1] == key else entry.reference, allowed)
-    if 0 < count <= len(entry.fit):
-        at = (*keys, "fit") if source.has((*keys, "fit")) else place
-        allowed = f"fewer values than there are forces; {entry.reference} has {count} of them here"
-        yield source.refuse(at, list(entry.fit), allowed)
+        yield source.refuse((*keys, "reference"), None, allowed)
+    yield from _fitted(source, keys, entry, made)
 
 
 def _fitted(

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
 from geometry.refusal import is_number
+from workflow.data import bench
 from workflow.plan.plan import Plan, read
 from workflow.study import figure_needs, plain_yaml, units
 from workflow.study.errors import StudyError
@@ -33,7 +34,7 @@ def written(folder, text):
 def answer(folder, text):
     """The plan, or the message; anything else is an error of the test."""
     try:
-        return read(written(folder, text))
+        return read(written(folder, text), bench.refused)
     except StudyError as error:
         said = str(error)
     lines = said.splitlines()

@@ -1,9 +1,8 @@
 """What calibrations are and write; their cases are those that a fit tries."""
 
-from pathlib import Path
-
 from workflow.analyses.analysis import Analysis
 from workflow.study.contents import Study
+from workflow.study.schema import FORCE_MAPS
 
 
 class Calibrations(Analysis):
@@ -16,7 +15,7 @@ class Calibrations(Analysis):
     def inputs(self, study: Study) -> list[str]:
         """Forces that the user has measured."""
         named = {str(entry.reference) for entry in study.calibration.values()}
-        return sorted(name for name in named if Path(name).suffix)
+        return sorted(named.difference(FORCE_MAPS))
 
     def files(self, study: Study) -> list[str]:
         """A muscle of each, to paste into a study file."""

@@ -6,6 +6,7 @@ import pandas as pd
 
 from workflow.analyses.analysis import Solved
 from workflow.analyses.calibration import calibrate
+from workflow.data import bench
 from workflow.study.contents import Study
 from workflow.study.errors import StudyError
 
@@ -20,6 +21,8 @@ def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
     """
     if not study.calibration:
         raise StudyError(f"{study.source.path}: calibration is missing; see config/README.md")
+    for error in bench.refused(study):
+        raise error
     found = [calibrate.calibrate(study, name) for name in study.calibration]
     states = [
         each.states.assign(calibration=each.name, fitted_by=each.entry.model) for each in found
