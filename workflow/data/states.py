@@ -42,6 +42,7 @@ NUMBER = "state"  # column: number of the state in its record
 SUSPECT = "suspect"  # status of a point that is shown but not used
 FLAGS = "flags"  # column: what to know of a state beside its status, words of solver/status.py
 STRETCH = COLUMN["thread_stretch_max"]
+STRENGTH = "thread_strength [N]"  # column: what a thread bears, NaN if that is not known
 
 
 @dataclass(frozen=True)
@@ -116,10 +117,12 @@ def states(data: SceneData, quantities: Iterable[str]) -> pd.DataFrame:
 
     Columns: source (model), muscle, variant, point (stop or zero force), the two prescribed
     controls with the exact numbers of the study, the quantities, the discretisation errors of some
-    of them, the largest thread stretch, status, flags.
+    of them, the largest thread stretch, status, flags, the strength of a thread.
     """
     frames = [of_curve(data.scene, quantities, *solved) for solved in data.solutions]
-    return pd.concat(frames, ignore_index=True).drop(columns=NUMBER)
+    table = pd.concat(frames, ignore_index=True).drop(columns=NUMBER)
+    known = {name: made.limits.thread_strength for name, made in data.studied.items()}
+    return table.assign(**{STRENGTH: table["muscle"].map(known).astype(float)})
 
 
 def of_curve(

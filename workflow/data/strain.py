@@ -63,11 +63,11 @@ def summary(curves: Iterable[Any]) -> dict[str, str]:
         stretch = np.nan_to_num(solution.states["thread_stretch_max"])
         beyond = [k for k, flags in enumerate(solution.flags) if Flag.OVERSTRAINED in flags]
         long = [k for k, note in enumerate(solution.notes) if UNKNOWN in note]
-        for states, what in ((beyond, "overstrained"), (long, "with long threads")):
+        for states, what in ((beyond, "are overstrained"), (long, "have long threads")):
             if states:
                 worst = max(states, key=stretch.__getitem__)
                 found.setdefault(curve.key, []).append(
-                    f"{curve.place.muscle}: {len(states)} of {len(solution.notes)} states "
+                    f"{len(states)} of {len(solution.notes)} states of {curve.place.muscle} "
                     f"{what}, at most: {solution.notes[worst]}"
                 )
     return {key: ". ".join(dict.fromkeys(said)) for key, said in found.items()}

@@ -22,10 +22,12 @@ from workflow.data.states import (
     GOOD,
     REFERENCE,
     SHOWN,
+    STRENGTH,
     STRETCH,
     SUSPECT,
     error_of,
 )
+from workflow.data.strain import LONG
 from workflow.figures.labels import SERIES, shown
 from workflow.figures.style import SOFT, compared, grow, in_order, labelled, legend, look_of, series
 
@@ -55,7 +57,6 @@ WORDS = {  # what is said of states that are not drawn: of one, of several
     "unstable_state": ("unstable state", "unstable states"),
     NOT_POSITIVE: ("state not above zero", "states not above zero"),
 }
-STRETCHED = 1.05  # a thread stretch that few threads stand
 SAME = 1e-6  # of the largest value: curves that differ by less are one line
 BAND = "_band"
 CHARACTERS = 17  # of a note, per inch of figure
@@ -259,14 +260,17 @@ def _flags(table: pd.DataFrame, flag: str) -> str:
 
 
 def _stretched(table: pd.DataFrame) -> str:
-    """Names threads that are stretched further than most stand."""
-    if STRETCH not in table or not (table[STRETCH] > STRETCHED).any():
+    """Names threads that are stretched far, where it is not known what they bear."""
+    if STRETCH not in table:
         return ""
-    largest = table.groupby("source")[STRETCH].max()
+    unknown = table[table[STRENGTH].isna()] if STRENGTH in table else table
+    largest = unknown.groupby("source")[STRETCH].max()
     each = [
         f"{100 * (largest[source] - 1):.0f} % ({look_of(source)['label']})"
-        for source in in_order(largest[largest > STRETCHED].index)
+        for source in in_order(largest[largest > LONG].index)
     ]
+    if not each:
+        return ""
     return f"Threads are stretched by up to {', '.join(each)}: more than many threads stand."
 
 

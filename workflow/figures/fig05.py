@@ -14,7 +14,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
-from workflow.data.states import CONTRACTION, GOOD, NUMBER, PRESSURE, of_curve
+from workflow.data.states import CONTRACTION, GOOD, NUMBER, PRESSURE, STRENGTH, of_curve
 from workflow.data.stress import LARGEST, along_meridian, wall
 from workflow.figures import curves, stress_views
 from workflow.figures.labels import SERIES, constants, series
@@ -37,7 +37,8 @@ def table(data: Any) -> pd.DataFrame:
                 drawn = pd.concat([corners, along_meridian(corners)], ignore_index=True)
             muscle = data.muscles[state["muscle"]]
             cap = muscle.length / 2 * (1 - state[CONTRACTION])
-            known = {CAP: cap, WALL: muscle.wall_thickness}
+            strength = data.studied[state["muscle"]].limits.thread_strength
+            known = {CAP: cap, WALL: muscle.wall_thickness, STRENGTH: strength}
             frames.append(drawn.assign(**state.drop(NUMBER), **known))
     every = pd.concat(frames, ignore_index=True)
     every[SERIES] = series(every, ["muscle", PRESSURE, CONTRACTION])

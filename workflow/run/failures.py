@@ -3,6 +3,8 @@
 The cases of the scenes come first. Those of an analysis follow, where it was asked for: it writes a
 table of its own, ``<name>_failures.csv``, which gathering takes over, and adds its rows to a table
 that is there. A case of both has one row. Only cases of scenes make a run fail.
+
+Cases that were solved, to limits that the user should know of, stand there too: as ``converged``.
 """
 
 import csv
@@ -27,7 +29,7 @@ def write(
     strained: Mapping[str, str] | None = None,
     others: Iterable[Path] = (),
 ) -> None:
-    """Write the table of all cases that are not wholly converged; often it has a header only.
+    """Write the table of all cases of which there is something to say; often it has a header only.
 
     ``strained`` says by key which states are beyond a limit of the material, or may be; ``others``
     are the tables of analyses.
@@ -107,7 +109,7 @@ def report(path: Path) -> tuple[str, bool]:
     """
     rows = read(path)
     own = [row for row in rows if row["scenes"]]
-    lines = [f"{row['label']}: {row['status']}, {row['reason']}" for row in own]
+    lines = [f"{row['label']}: {_said(row['status'])} {row['reason']}" for row in own]
     failed = sum(row["status"] not in ANSWERS for row in own)
     if failed:
         lines.append(f"{failed} case{'s' if failed > 1 else ''} failed; see {path}")
@@ -119,3 +121,7 @@ def report(path: Path) -> tuple[str, bool]:
         said = ", ".join(f"{count} {status}" for status, count in sorted(counts.items()))
         lines.append(f"analysis {name}: {said}; see {path}")
     return "\n".join(lines), failed > 0
+
+
+def _said(status: str) -> str:
+    return "solved;" if status == CaseStatus.CONVERGED else f"{status},"

@@ -255,6 +255,19 @@ def test_every_status_and_flag_is_named(drawn):
             assert "stretched by up to 12 % (FE solid)" in text
 
 
+@pytest.mark.parametrize("name", ["fig04", "fig05", "fig12"])
+def test_where_the_strength_is_known_no_stretch_is_too_far(name, tmp_path):
+    """Then what is beyond it is overstrained, and nothing else."""
+    path = tmp_path / "strong.yaml"
+    path.write_text(STUDY.replace("NORMAL", f"{PAPERS}\n    thread_strength: 1000"))
+    planned = plan(load(path))
+    for key in set(planned.scenes[name].values()):
+        case = planned.cases[key].case
+        record.write(tmp_path / f"{key}.h5", case, spoil(case, solve(case)))
+    figure = module(name).draw(module(name).table(SceneData.read(planned, name, tmp_path)))
+    assert "Threads are stretched" not in words(figure)
+
+
 def test_bands_hug_their_lines(drawn):
     _, found = drawn
     for _, figure, _, _ in found.values():
