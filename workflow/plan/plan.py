@@ -159,6 +159,7 @@ def plan(study: Study, findings: Findings | None = None) -> Plan:
     found = Findings() if findings is None else findings
     wishes: dict[str, _Wish] = {}
     places: dict[str, dict[Place, str]] = {}
+    by_place: dict[Place, str] = {}
     for name, scene in study.scenes.items():
         if not study.muscles.keys() >= {*scene.muscles}:
             continue  # one of them was refused
@@ -167,6 +168,10 @@ def plan(study: Study, findings: Findings | None = None) -> Plan:
         with found.gathering():
             for place, case in _curves(study, name, scene, found):
                 curve = _identity(case)
+                if by_place.setdefault(place, curve) != curve:
+                    allowed = f"names that no scene's effects or mesh make: {place} is two curves"
+                    keys = ("scenes", name, "variants")
+                    raise study.source.refuse(keys, list(scene.variants), allowed)
                 wishes.setdefault(curve, _Wish(case)).add(name, place, case)
                 places.setdefault(name, {})[place] = curve
     if findings is None:

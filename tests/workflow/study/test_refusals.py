@@ -526,6 +526,19 @@ def test_a_figure_that_cannot_be_drawn_is_refused(tmp_path, figure, path, said):
     assert f"scenes.{figure}." in found
 
 
+def test_two_curves_of_one_name_are_refused(tmp_path):
+    text = STUDY.replace("[membrane, solid]", "[cylinder]").replace("[default, paper]", "default")
+    text = text.replace("  paper:", "  default_twist_on: {effects: {threads: two_way}}\n  paper:")
+    scene = text[text.index("  fig04:") :]
+    other = scene.replace("fig04", "other").replace("default", "default_twist_on")
+    assert isinstance(answer(tmp_path, text + other), Plan)
+    said = refusal(
+        tmp_path, text + other + scene.replace("fig04", "third") + "    effects: {twist: on}\n"
+    )
+    assert "scenes.third.variants = ['default'] is refused" in said
+    assert "is two curves" in said
+
+
 CALIBRATION = STUDY + "calibration:\n  mine: {muscle: one}\n"
 GOOD = "pressure_MPa,contraction,force_N\n0.3,0,700\n0.3,0.1,400\n0.3,0.2,100\n"
 REFERENCES = [
