@@ -49,24 +49,32 @@ class Source:
 
     def validated(self, findings: Findings) -> StudyFile:
         """The entries that fit the schema; of the others, and of what has no value, the errors."""
+        if not isinstance(self.plain, dict):
+            raise self.refuse((), self.plain, "a mapping, key: value")
+        empty = list(_without_value(self.plain))
         places: list[Keys] = []
         unknown: list[Keys] = []  # keys without which an entry is sound
-        try:
-            file = StudyFile.model_validate(self.plain)
-        except ValidationError as errors:
-            for error in errors.errors(include_url=False):
-                findings.add(self._of_schema(error))
-                alone = error["type"] == "extra_forbidden" and len(error["loc"]) == 3
-                (unknown if alone else places).append(error["loc"])
-        if not isinstance(self.plain, dict):
-            findings.say()
-        for keys in _without_value(self.plain):
+        left = self.plain
+        while True:  # some errors are seen only when others are gone
+            try:
+                file = StudyFile.model_validate(left)
+                break
+            except ValidationError as errors:
+                before = len(places), len(unknown)
+                for error in errors.errors(include_url=False):
+                    alone = error["type"] == "extra_forbidden" and len(error["loc"]) == 3
+                    to = unknown if alone else places
+                    if error["loc"] not in to:
+                        findings.add(self._of_schema(error))
+                        to.append(error["loc"])
+                if before == (len(places), len(unknown)):
+                    raise findings.error() from None
+            left = self._without(places, unknown)
+        for keys in empty:
             if keys not in places:
                 findings.add(self.refuse(keys, None, "a value; or leave the key out"))
                 places.append(keys)
-        if places or unknown:
-            file = StudyFile.model_validate(self._without(places, unknown))
-        return file
+        return StudyFile.model_validate(self._without(places, unknown)) if empty else file
 
     def refuse(self, keys: Keys, value: object, allowed: str) -> StudyError:
         """The error for the value of a key (None: the key is missing)."""

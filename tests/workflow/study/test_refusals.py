@@ -344,6 +344,12 @@ def test_errors_of_cases_and_of_entries_at_once(tmp_path):
     assert "scenes.fig04.models" in said
 
 
+def test_a_key_that_is_no_word_hides_nothing(tmp_path):
+    said = refusal(tmp_path, changed("end: butt", "end: but") + "4: 1\n")
+    assert "variants.paper.effects.end" in said
+    assert "study.yaml:28: 4 is no key here" in said
+
+
 def test_of_many_errors_the_first_are_said(tmp_path):
     said = refusal(tmp_path, beside(chain(30, "{{base: one, length: -1}}#{}")))
     assert said.endswith("... and 22 more")
