@@ -17,7 +17,9 @@ for each in ANALYSES.values():
         input:
             records=lambda wildcards, name=each.name: map(record_of, cases_of_analysis(name)),
             files=each.inputs(PLAN.study),
-            sources=sources("workflow.programs.analysis", *each.modules),
+            sources=lambda wildcards, modules=each.modules: sources(
+                "workflow.programs.analysis", *modules
+            ),
             # Added to, not read. Not ancient(): with that Snakemake (9.27) leaves the analysis out of
             # a run in which the dataset is gathered again, even where its outputs are missing.
             dataset="results/dataset.nc" if each.in_dataset else [],

@@ -69,7 +69,7 @@ def of_checkout(file):
 
 
 def sources(*modules):
-    """What some modules are made of."""
+    """What some modules are made of. Ask late: parsing all of them takes half a second."""
     return [of_checkout(file) for file in closure.sources(*modules)]
 
 

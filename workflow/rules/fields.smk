@@ -7,7 +7,7 @@
 rule fields:
     input:
         record=lambda wildcards: record_of(FIELD_FILES[wildcards.file][0]),
-        sources=sources("workflow.programs.fields"),
+        sources=lambda _: sources("workflow.programs.fields"),
     output:
         "results/fields/{file}",
     log:

@@ -22,7 +22,7 @@ for page_name, parts in PAGES.items():
             tables=page_tables,
             additions=added_to(page_name),
             caption=os.path.relpath(page_caption),
-            sources=sources("workflow.programs.page"),
+            sources=lambda _: sources("workflow.programs.page"),
         output:
             report(
                 f"results/report/{page_name}.html",

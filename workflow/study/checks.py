@@ -1,6 +1,7 @@
 """What must fit together in a study before anything runs, and what of it is unusual."""
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
@@ -179,6 +180,9 @@ def unusual(source: Source, file: StudyFile, muscles: Mapping[str, StudiedMuscle
         line for name, made in muscles.items() for line in _unusual_braid(source, name, made)
     )
     for name, asked in file.scenes.items():
+        if re.match(r"fig\w*\d", name, re.IGNORECASE) and not figure_needs.drawn(name):
+            known_figures = choices(name, figure_needs.NEEDS)
+            yield f"{source.place(('scenes', name))} is not drawn: no figure; {known_figures}"
         known = [muscles[m] for m in asked.muscles if m in muscles]
         yield from _unusual_load(source, ("scenes", name, "load"), asked, known)
 

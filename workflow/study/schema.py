@@ -7,7 +7,7 @@ solver/); here stands what a file may contain. config/README.md describes every 
 import re
 from collections import Counter
 from dataclasses import fields
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model
 from pydantic_core import PydanticCustomError
@@ -103,9 +103,19 @@ def _sorted_names(value: object) -> tuple[str, ...]:
     return tuple(sorted(_each_once(value)))
 
 
+COUNTED = {2: "two", 3: "three"}
+
+
 def _tuple_of(kind: Any) -> Any:
-    """A tuple, which a file writes as a list."""
-    return Annotated[kind, BeforeValidator(lambda v: tuple(v) if isinstance(v, list) else v)]
+    """A tuple of some numbers, which a file writes as a list."""
+    count = len(get_args(kind))
+
+    def as_tuple(value: object) -> tuple[object, ...]:
+        if not isinstance(value, list) or len(value) != count:
+            raise refusal(f"a list of {COUNTED[count]} numbers")
+        return tuple(value)
+
+    return Annotated[kind, BeforeValidator(as_tuple)]
 
 
 def _whole(value: object) -> object:

@@ -173,6 +173,10 @@ class Source:
     def _of_schema(self, error: ErrorDetails) -> StudyError:
         keys = error["loc"]
         line = self.line(keys) or 0
+        if not keys:
+            sections = ", ".join(StudyFile.model_fields)
+            text = f"{printable(str(self.path))}: is no study\n  allowed: a mapping with {sections}"
+            return StudyError(text)
         allowed = error["msg"].removeprefix("Input should be ")
         if keys and keys[-1] == "[key]":
             allowed = allowed if error["type"] == "refused" else NAME_RULE

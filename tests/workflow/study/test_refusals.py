@@ -545,6 +545,20 @@ def test_two_curves_of_one_name_are_refused(tmp_path):
     assert "is two curves" in said
 
 
+@pytest.mark.parametrize("name", ["fig4", "FIG04", "fig04b", "fig99", "figure4"])
+def test_a_scene_that_looks_like_a_figure_and_is_none_is_named(tmp_path, name):
+    made = answer(tmp_path, changed("  fig04:", f"  {name}:"))
+    assert isinstance(made, Plan), made
+    assert any(f"scenes.{name} is not drawn" in line for line in made.study.warnings)
+
+
+@pytest.mark.parametrize("text", ["", "null", "[1, 2]", "5", "a: 1"])
+def test_a_file_that_is_no_study(tmp_path, text):
+    said = refusal(tmp_path, text)
+    assert "study.yaml:  " not in said
+    assert "materials, muscles, variants" in said or "materials is missing" in said
+
+
 CALIBRATION = STUDY + "calibration:\n  mine: {muscle: one}\n"
 GOOD = "pressure_MPa,contraction,force_N\n0.3,0,700\n0.3,0.1,400\n0.3,0.2,100\n"
 REFERENCES = [
