@@ -14,50 +14,12 @@ and one message if that cannot be built.
 import argparse
 import json
 import sys
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
-from geometry import attempt, cell, meridian, section, whole
-from geometry.grading import UnbuildableMesh
-from geometry.muscle import Muscle
-from geometry.refusal import Refusal, build
+from geometry import attempt
+from geometry.make import make
+from geometry.refusal import Refusal
 from geometry.seal import write_why_none
-
-KEYS = {
-    "meridian": {"kind", "muscle", "mesh"},
-    "section": {"kind", "muscle", "mesh", "end"},
-    "cell": {"kind", "muscle", "mesh", "thread_radius", "thread_lines"},
-    "whole": {"kind", "muscle"},
-}
-
-
-def make(spec: Mapping[str, Any], output: Path) -> None:
-    """Write what a specification describes.
-
-    Raises
-    ------
-    Refusal
-        Naming the field, its value and what is allowed.
-    """
-    kind = spec.get("kind") if isinstance(spec, Mapping) else None
-    if not isinstance(kind, str) or kind not in KEYS:
-        raise UnbuildableMesh("kind", kind, ", ".join(KEYS))
-    if spec.keys() != KEYS[kind]:
-        raise UnbuildableMesh("keys", sorted(spec), f"exactly {sorted(KEYS[kind])}")
-    muscle = Muscle.from_dict(spec["muscle"])
-    if kind == "meridian":
-        mesh = build(meridian.MeridianMesh, spec["mesh"], UnbuildableMesh, "mesh")
-        meridian.write(muscle, mesh, output)
-    elif kind == "section":
-        section_mesh = build(section.SectionMesh, spec["mesh"], UnbuildableMesh, "mesh")
-        section.write(muscle, section_mesh, spec["end"], output)
-    elif kind == "cell":
-        cell_mesh = build(cell.CellMesh, spec["mesh"], UnbuildableMesh, "mesh")
-        lines = {"thread_lines": spec["thread_lines"] is True}
-        cell.write(muscle, cell_mesh, spec["thread_radius"], output, **lines)
-    else:
-        whole.write(muscle, output)
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -18,16 +18,20 @@ is finer there.
 """
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from geometry.gmsh_file import writing
-from geometry.grading import OF_WALL, UnbuildableMesh
+from geometry.grading import UnbuildableMesh
 from geometry.labels import Boundary, Region
-from geometry.muscle import ONE, Muscle
-from geometry.refusal import is_count, is_number
+from geometry.mesh_settings import CellMesh
+from geometry.muscle import Muscle
+from geometry.refusal import build, is_number
 from geometry.seal import seal
 
+KEYS = {"mesh", "thread_radius", "thread_lines"}  # of a specification, beside kind and muscle
 # Faces of a gmsh box in the order of their tags.
 FACES = (
     Boundary.INNER,
@@ -37,35 +41,6 @@ FACES = (
     Boundary.AXIAL_LOW,
     Boundary.AXIAL_HIGH,
 )
-
-
-@dataclass(frozen=True, kw_only=True)
-class CellMesh:
-    """Sizes of the tetrahedra: near a thread, and how they grow away from it.
-
-    ``refinement`` m divides all sizes by m. ``repeats`` is the number of cells along the axis that
-    are meshed as one: the muscle is the same with any, so it is for tests.
-
-    Raises
-    ------
-    UnbuildableMesh
-        Naming the field, its value and what is allowed.
-    """
-
-    thread_size: float = field(default=1.0, metadata=ONE | {"relative_to": "thread radius"})
-    body_size: float = field(default=0.3, metadata=OF_WALL)
-    growth: float = field(default=0.5, metadata=ONE)  # of the size, with the distance
-    refinement: int = field(default=1, metadata=ONE)
-    repeats: int = field(default=1, metadata=ONE)
-
-    def __post_init__(self) -> None:
-        for name in ("thread_size", "body_size", "growth"):
-            value = getattr(self, name)
-            if not (is_number(value) and value > 0):
-                raise UnbuildableMesh(name, value, "a finite number > 0")
-        for name in ("refinement", "repeats"):
-            if not is_count(getattr(self, name)):
-                raise UnbuildableMesh(name, getattr(self, name), "an integer >= 1")
 
 
 @dataclass(frozen=True)
@@ -207,3 +182,10 @@ def _set_sizes(box: Box, mesh: CellMesh, thread_radius: float | None) -> None:
     for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
         gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
     gmsh.model.mesh.setSizeCallback(size)
+
+
+def from_spec(muscle: Muscle, spec: Mapping[str, Any], output: Path) -> None:
+    """Write what a specification describes."""
+    mesh = build(CellMesh, spec["mesh"], UnbuildableMesh, "mesh")
+    lines = spec["thread_lines"] is True
+    write(muscle, mesh, spec["thread_radius"], output, thread_lines=lines)

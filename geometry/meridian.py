@@ -3,26 +3,21 @@
 Coordinates x = R (the inner radius everywhere), y = Z, z = 0, in mm.
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 from geometry.gmsh_file import writing
-from geometry.grading import OF_DIAMETER, OF_WALL, Grading
+from geometry.grading import UnbuildableMesh
 from geometry.labels import Boundary
-from geometry.muscle import ONE, Muscle
+from geometry.mesh_settings import MeridianMesh
+from geometry.muscle import Muscle
+from geometry.refusal import build
 from geometry.seal import seal
 
+KEYS = {"mesh"}  # of a specification, beside kind and muscle
 FIRST_FREE_TAG = 100  # above every label
-
-
-@dataclass(frozen=True, kw_only=True)
-class MeridianMesh(Grading):
-    """Numerics of the curve mesh: about 15 segments for the muscle of the paper."""
-
-    cap_step: float = field(default=0.5, metadata=OF_WALL)
-    growth: float = field(default=1.35, metadata=ONE)
-    body_step: float = field(default=1.0, metadata=OF_DIAMETER)
 
 
 def length(muscle: Muscle) -> float:
@@ -56,3 +51,9 @@ def write(muscle: Muscle, mesh: MeridianMesh, path: Path) -> None:
         gmsh.model.addPhysicalGroup(1, lines, Boundary.INNER, Boundary.INNER.name)
         gmsh.option.setNumber("Mesh.SaveElementTagType", 2)  # lines labelled by their group
         gmsh.model.mesh.generate(1)
+
+
+def from_spec(muscle: Muscle, spec: Mapping[str, Any], output: Path) -> None:
+    """Write what a specification describes."""
+    mesh = build(MeridianMesh, spec["mesh"], UnbuildableMesh, "mesh")
+    write(muscle, mesh, output)

@@ -12,44 +12,24 @@ fields of the clamp have a kink::
                             LAYER_1, LAYER_2
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.gmsh_file import writing
-from geometry.grading import OF_DIAMETER, OF_WALL, Grading, UnbuildableMesh
+from geometry.grading import UnbuildableMesh
 from geometry.labels import Boundary, Region
-from geometry.muscle import ONE, Muscle
-from geometry.refusal import is_count
+from geometry.mesh_settings import SectionMesh
+from geometry.muscle import Muscle
+from geometry.refusal import build
 from geometry.seal import seal
 
+KEYS = {"mesh", "end"}  # of a specification, beside kind and muscle
 ENDS = ("clamp", "butt", "sliding")
-
-
-@dataclass(frozen=True, kw_only=True)
-class SectionMesh(Grading):
-    """Numerics of the section: 78 triangles for the muscle of the paper with a clamp.
-
-    ``rows`` are rows of elements below, between and above the thread layers; a bare tube is one
-    band with their sum.
-    """
-
-    rows: tuple[int, int, int] = field(default=(1, 1, 1), metadata=ONE)
-    cap_step: float = field(default=1.0, metadata=OF_WALL)
-    growth: float = field(default=1.5, metadata=ONE)
-    body_step: float = field(default=2.0, metadata=OF_DIAMETER)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not (
-            isinstance(self.rows, tuple)
-            and len(self.rows) == 3
-            and all(is_count(row) for row in self.rows)
-        ):
-            raise UnbuildableMesh("rows", self.rows, "three integers >= 1")
 
 
 def area(muscle: Muscle, end: str) -> float:
@@ -133,3 +113,9 @@ def _name_groups(axial: list[list[int]], radial: list[list[int]], cells: list[in
     for boundary, lines in groups.items():
         gmsh.model.addPhysicalGroup(1, lines, boundary, boundary.name)
     gmsh.model.addPhysicalGroup(2, cells, Region.WALL, Region.WALL.name)
+
+
+def from_spec(muscle: Muscle, spec: Mapping[str, Any], output: Path) -> None:
+    """Write what a specification describes."""
+    mesh = build(SectionMesh, spec["mesh"], UnbuildableMesh, "mesh")
+    write(muscle, mesh, spec["end"], output)

@@ -7,7 +7,9 @@ cap 1, cap 2, thread clockwise 1, ...
 
 import math
 import re
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,7 @@ from numpy.typing import NDArray
 from geometry.gmsh_file import writing
 from geometry.muscle import Braid, Muscle, UnbuildableMuscle
 
+KEYS: set[str] = set()  # of a specification, beside kind and muscle
 DEVIATION = 1e-4  # of a thread's spline from its helix [mm]
 END_ERROR = 0.04  # of splines through points of a helix, see spline_heights
 MIN_STEPS = 16  # of a spline, however small a part of a turn the muscle has
@@ -138,3 +141,8 @@ def _tidy(step: Path, names: list[str]) -> None:
     numbers = iter(range(1, len(names) + 1))
     text = re.sub(r"(?<=OCCURRENCE\(')\d+", lambda _: str(next(numbers)), text)
     step.write_text(text)
+
+
+def from_spec(muscle: Muscle, _spec: Mapping[str, Any], output: Path) -> None:
+    """Write what a specification describes."""
+    write(muscle, output)

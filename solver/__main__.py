@@ -9,7 +9,7 @@ import argparse
 import json
 import sys
 import time
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from geometry.files import atomic_write
@@ -27,6 +27,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--record", type=Path, required=True, help="HDF5 file to write")
     parser.add_argument("--cost", type=Path, required=True, help="JSON file: seconds and memory")
     parser.add_argument("--log", type=Path, required=True, help="what FreeFEM prints")
+    parser.add_argument("--code", default="", help="digest of the sources (0.1 s if left out)")
     parser.add_argument("--wall-time", type=float, default=3600.0, help="limit [s]")
     parser.add_argument("--memory", type=float, default=4000.0, help="limit [MB]")
     given = parser.parse_args(arguments)
@@ -44,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
         began = time.process_time()
         solution, usage = solve(case, given.mesh, given.log, limits)
         solving = time.process_time() - began
-        record.write(given.record, case, solution)
+        record.write(given.record, case, replace(solution, code=given.code))
         _write_cost(given.cost, start, solving, solution.status, usage)
     except DamagedMesh as error:
         given.mesh.unlink(missing_ok=True)  # else it would be so for ever

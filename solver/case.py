@@ -27,21 +27,14 @@ from solver.effects import (
 )
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin, Thread
-from solver.numerics import KINDS, NUMERICS_OF_MODEL, Numerics
+from solver.models import MODELS
+from solver.numerics import KINDS, Numerics
 from solver.refusal import UnsolvableCase
 
-MODELS = tuple(NUMERICS_OF_MODEL)
-NETS = ("geometric", "geometric_layers")  # Eq. (1): a braid without a wall
-MESHED = {"membrane": "meridian", "solid": "section", "cell": "cell"}
-WITH_KAPPA = {"solid", "cell"}  # the others are incompressible
 INCOMPRESSIBLE = {"kappa": 1e300}
 ANY_RUBBER = {"c10": 1, "c01": 0} | INCOMPRESSIBLE
 ANY_THREAD = {"stiffness": 1}
-UNREAD: dict[str, dict[str, dict[str, float]]] = {  # by model, what it leaves out of the identity
-    **{model: {"muscle": {"wall_thickness": 1e9, "length": 1.0}} for model in NETS},
-    "cylinder": {"rubber": INCOMPRESSIBLE},
-    "membrane": {"rubber": INCOMPRESSIBLE},
-}
+ANY_MUSCLE = {"wall_thickness": 1e9, "length": 1.0}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +67,7 @@ class Case:
             raise UnsolvableCase("model", self.model, ", ".join(MODELS))
         if self.muscle.braid is not None and self.thread is None:
             raise UnsolvableCase("thread", None, "a thread, as the muscle has a braid")
-        if self.muscle.braid is None and self.model in NETS:
+        if self.muscle.braid is None and MODELS[self.model].needs_braid:
             raise UnsolvableCase("model", self.model, "another model: Eq. (1) needs a braid")
         check_carried(self.model, self.effects)
         if self.muscle.braid is None and self.effects.rubber is Rubber.NONE:
@@ -84,7 +77,7 @@ class Case:
         for stop in self.fields_at:
             if stop not in self.path.stops:
                 raise UnsolvableCase("fields_at", stop, f"stops of the path, {self.path.stops}")
-        if self.fields_at and self.model not in MESHED:
+        if self.fields_at and not MODELS[self.model].fields:
             raise UnsolvableCase("fields_at", self.fields_at, f"none: {self.model} has no fields")
 
     def as_dict(self) -> dict[str, Any]:
@@ -95,23 +88,24 @@ class Case:
             "muscle": muscle,
             "path": asdict(self.path),
         }
-        clamped = self.model == "solid" and self.effects.end is End.CLAMP
-        if not clamped:
+        parts, braided = MODELS[self.model].parts, self.muscle.braid is not None
+        if not self.clamped:
             del muscle["cap_length"]
-        if self.model in NETS:
-            del muscle["wall_thickness"], muscle["length"]
-            return values
-        braided = self.muscle.braid is not None
-        read = switches(self.model, braided=braided)
-        values["effects"] = {name: getattr(self.effects, name) for name in read}
-        if self.effects.rubber is Rubber.ELASTIC:
+        for name in MODELS[self.model].unread:
+            del muscle[name]
+        if "effects" in parts:
+            read = switches(self.model, braided=braided)
+            values["effects"] = {name: getattr(self.effects, name) for name in read}
+        if "rubber" in parts and self.effects.rubber is Rubber.ELASTIC:
             values["rubber"] = asdict(self.rubber)
             if not self.compressible:
                 del values["rubber"]["kappa"]
-        if braided and self.effects.stretch is Stretch.ELASTIC:
+        if "thread" in parts and braided and self.effects.stretch is Stretch.ELASTIC:
             assert self.thread is not None  # see __post_init__
             values["thread"] = asdict(self.thread)
-        values["numerics"] = {name: asdict(getattr(self.numerics, name)) for name in self._read()}
+        if "numerics" in parts:
+            read = self._read()
+            values["numerics"] = {name: asdict(getattr(self.numerics, name)) for name in read}
         if self.fields_at:
             values["fields_at"] = self.fields_at
         return values
@@ -129,16 +123,22 @@ class Case:
     @property
     def compressible(self) -> bool:
         """Whether the bulk modulus matters."""
-        return self.model in WITH_KAPPA and self.effects.volume is Volume.COMPRESSIBLE
+        return MODELS[self.model].compressible and self.effects.volume is Volume.COMPRESSIBLE
+
+    @property
+    def clamped(self) -> bool:
+        """Whether the tube goes on into the fitting."""
+        return "end" in MODELS[self.model].switches and self.effects.end is End.CLAMP
 
     def _read(self) -> list[str]:
         """The numerics that model and effects read."""
         effects, braided = self.effects, self.muscle.braid is not None
-        names = [*NUMERICS_OF_MODEL[self.model]]
-        names += ["clamp"] * (self.model == "solid" and effects.end is End.CLAMP)
+        model = MODELS[self.model]
+        names = [*model.numerics]
+        names += ["clamp"] * self.clamped
         slackens = effects.threads is ThreadLaw.TENSION_ONLY and effects.stretch is Stretch.ELASTIC
-        names += ["slack"] * (braided and slackens)
-        names += ["spread"] * (braided and self.model == "cell")
+        names += ["slack"] * ("threads" in model.switches and braided and slackens)
+        names += ["spread"] * ("layers" in model.switches and braided)
         return names
 
     def canonical(self) -> str:
@@ -152,9 +152,9 @@ class Case:
 
     def mesh_spec(self) -> str | None:
         """What shapes the mesh, as canonical JSON for ``python -m geometry``; None without one."""
-        if self.model not in MESHED:
+        kind = MODELS[self.model].mesh
+        if kind is None:
             return None
-        kind = MESHED[self.model]
         values = self.as_dict()
         muscle = values["muscle"]
         if kind == "cell":
@@ -216,20 +216,21 @@ def _filled(values: object) -> dict[str, Any]:
     for key in values:
         if key not in known:
             raise UnsolvableCase(key, values[key], f"no such key; there are {', '.join(known)}")
-    model = values.get("model")
-    if model not in MODELS:
-        raise UnsolvableCase("model", model, ", ".join(MODELS))
+    name: Any = values.get("model")
+    if name not in MODELS:
+        raise UnsolvableCase("model", name, ", ".join(MODELS))
+    model = MODELS[name]
     given: dict[str, Any] = {"effects": {}, "numerics": {}, "fields_at": ()} | dict(values)
     effects = given["effects"] if isinstance(given["effects"], Mapping) else {}
-    if model in NETS or effects.get("rubber") == Rubber.NONE:
+    if "rubber" not in model.parts or effects.get("rubber") == Rubber.NONE:
         given = {"rubber": ANY_RUBBER} | given
-    if model in NETS or effects.get("stretch") == Stretch.RIGID:
+    if "thread" not in model.parts or effects.get("stretch") == Stretch.RIGID:
         given = {"thread": ANY_THREAD} | given
-    if effects.get("volume") == Volume.INCOMPRESSIBLE and isinstance(given.get("rubber"), Mapping):
+    keeps_volume = not model.compressible or effects.get("volume") == Volume.INCOMPRESSIBLE
+    if keeps_volume and isinstance(given.get("rubber"), Mapping):
         given["rubber"] = {**INCOMPRESSIBLE, **given["rubber"]}
-    for part, unread in UNREAD.get(model, {}).items():
-        if isinstance(given.get(part), Mapping):
-            given[part] = {**unread, **given[part]}
+    if isinstance(given.get("muscle"), Mapping):
+        given["muscle"] = {**{key: ANY_MUSCLE[key] for key in model.unread}, **given["muscle"]}
     return given
 
 

@@ -1,6 +1,6 @@
 """Effects: what a case may contain, what each adds to the energy, and its switch.
 
-One list, ``EFFECTS``. A model carries some of them; a few of those can be switched off in it. What
+One list, ``EFFECTS``. A model says which it carries and which switches it reads. What
 is off is absent from the solve: no unknowns, no terms. In FreeFEM each alternative is an include
 of its own, and a program is composed of those that are on (solver/solve.py).
 """
@@ -8,6 +8,7 @@ of its own, and a program is composed of those that are on (solver/solve.py).
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from solver.models import MODELS
 from solver.refusal import UnsolvableCase
 
 
@@ -108,16 +109,6 @@ KINDS: dict[str, type[StrEnum]] = {
     "volume": Volume,
     "rubber": Rubber,
 }
-READ_BY = {  # models that read a switch; others have what their entry in EFFECTS says
-    "end": ("solid",),
-    "threads": ("cylinder", "membrane", "solid", "cell"),
-    "layers": ("cell",),
-    "twist": ("cylinder", "cell"),
-    "wall": ("cylinder", "membrane"),
-    "stretch": ("cylinder",),
-    "volume": ("solid",),
-    "rubber": ("cylinder",),
-}
 OF_BRAID = ("threads", "layers", "stretch")  # switches that a bare tube does not read
 # Choices among ways to have an effect: a variant may make them for all models, and those that do
 # not resolve the effect go without. Any other switch is refused where it would change nothing.
@@ -130,63 +121,51 @@ class Effect:
 
     Attributes
     ----------
-    models : those that carry it
-    switch : field of Effects by which some of them leave it out; empty if the model decides
+    switch : field of Effects by which models that read it leave the effect out
     off : values of the switch that leave it out
     """
 
-    models: tuple[str, ...]
-    switch: str = ""
-    off: tuple[str, ...] = ()
+    switch: str
+    off: tuple[str, ...]
     braid: bool = False  # only muscles with a braid have it
 
 
-WITH_RUBBER = ("cylinder", "membrane", "solid", "cell")
 EFFECTS = {  # with what each adds to the energy
     "rubber": Effect(  # C10 (I1 - 3) + C01 (I2 - 3) of the wall
-        models=WITH_RUBBER,
         switch="rubber",
         off=(Rubber.NONE,),
     ),
     "wall_thickness": Effect(  # rubber, threads and pressure at their own radii, not all at one
-        models=WITH_RUBBER,
         switch="wall",
         off=(Wall.ONE_RADIUS,),
     ),
     "thread_stretch": Effect(  # EA (lf - 1)^2 / 2 of the threads, in place of lf <= 1
-        models=WITH_RUBBER,
         switch="stretch",
         off=(Stretch.RIGID,),
         braid=True,
     ),
     "slackening": Effect(  # no energy of threads that are shortened
-        models=WITH_RUBBER,
         switch="threads",
         off=(ThreadLaw.TWO_WAY,),
         braid=True,
     ),
     "end_caps": Effect(  # the same energy of a wall that is held to its first radius at the caps
-        models=("membrane", "solid"),
         switch="end",
         off=(End.SLIDING,),
     ),
     "cap_geometry": Effect(  # bending and shear of the wall, and the springs of the fitting
-        models=("solid",),
         switch="end",
         off=(End.SLIDING,),
     ),
     "twist": Effect(  # shear r tau of the wall, and threads turned by R tau
-        models=("cylinder", "cell"),
         switch="twist",
         off=(Twist.HELD,),
     ),
     "compressibility": Effect(  # - P^2 / (2 kappa)
-        models=("solid", "cell"),
         switch="volume",
         off=(Volume.INCOMPRESSIBLE,),
     ),
     "discrete_threads": Effect(  # that of the threads on single lines, not spread over their layer
-        models=("cell",),
         switch="layers",
         off=(Layers.SMEARED,),
         braid=True,
@@ -196,20 +175,20 @@ EFFECTS = {  # with what each adds to the energy
 
 def switches(model: str, *, braided: bool) -> list[str]:
     """The switches that a model reads."""
-    return [s for s in KINDS if model in READ_BY[s] and (braided or s not in OF_BRAID)]
+    read = MODELS[model].switches
+    return [s for s in KINDS if s in read and (braided or s not in OF_BRAID)]
 
 
 def active(model: str, effects: Effects, *, braided: bool) -> list[str]:
     """Names of the effects that are on."""
+    carried = MODELS[model]
     return [
         name
         for name, effect in EFFECTS.items()
-        if model in effect.models
+        if name in carried.effects
         and (braided or not effect.braid)
         and not (
-            effect.switch
-            and model in READ_BY[effect.switch]
-            and getattr(effects, effect.switch) in effect.off
+            effect.switch in carried.switches and getattr(effects, effect.switch) in effect.off
         )
     ]
 
@@ -227,6 +206,7 @@ def check_carried(model: str, effects: Effects) -> None:
     """
     for name in KINDS.keys() - CHOICES:
         value, default = getattr(effects, name), getattr(DEFAULT, name)
-        if value is not default and model not in READ_BY[name]:
-            allowed = f"{default} with {model}; {value} with {', '.join(READ_BY[name])}"
+        if value is not default and name not in MODELS[model].switches:
+            able = ", ".join(other for other in MODELS if name in MODELS[other].switches)
+            allowed = f"{default} with {model}; {value} with {able}"
             raise UnsolvableCase(name, value, allowed)

@@ -116,7 +116,7 @@ def check() -> None:
     FreeFemError
         If FreeFEM or a plugin is missing or does not work, with what to do in a few lines.
     """
-    found = command(PATH / "check.edp", {})
+    found = command(Path(__file__).with_name("check.edp"), {})
     try:
         done = subprocess.run(
             found,

@@ -4,12 +4,10 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from geometry.cell import CellMesh
 from geometry.grading import OF_WALL
-from geometry.meridian import MeridianMesh
+from geometry.mesh_settings import CellMesh, MeridianMesh, SectionMesh
 from geometry.muscle import ONE, Muscle
 from geometry.refusal import is_count, is_number
-from geometry.section import SectionMesh
 from solver.material import MPA, NEWTON, Thread
 from solver.refusal import UnsolvableCase
 
@@ -138,14 +136,6 @@ def _given(value: float | None, otherwise: float) -> float:
     return otherwise if value is None else value
 
 
-NUMERICS_OF_MODEL: dict[str, tuple[str, ...]] = {
-    "geometric": (),
-    "geometric_layers": (),
-    "cylinder": (),
-    "membrane": ("newton", "meridian"),
-    "solid": ("newton", "section"),
-    "cell": ("newton", "cell"),
-}
 KINDS: dict[str, Any] = {
     "newton": Newton,
     "meridian": MeridianMesh,

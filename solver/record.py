@@ -29,6 +29,7 @@ import io
 import json
 import re
 from dataclasses import dataclass, field, fields
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.files import atomic_write
+from solver import sources
 from solver.case import Case, digest
 from solver.declared import Declared
 from solver.status import CaseStatus, Flag, StateStatus
@@ -93,7 +95,7 @@ class Solution:
     fields : state number -> name -> array, as in the layout
     log : end of the solver's output where it failed
     unknowns : what was solved for beside contraction and pressure; 0 if nothing was solved
-    code : digest of the sources that solved it, of what was read from a record
+    code : digest of the sources that solved it; left out, of those that there are
     """
 
     status: CaseStatus
@@ -136,7 +138,7 @@ def _write(file: Any, case: Case, solution: Solution) -> None:
         layout=LAYOUT,
         key=case.key,
         case=case.canonical(),
-        code=code_digest(),
+        code=solution.code or code_digest(case.model),
         status=solution.status.value,
         reason=solution.reason,
         log=solution.log,
@@ -250,16 +252,11 @@ def _read_fields(file: Any, declared: Declared) -> dict[int, dict[str, NDArray[n
     }
 
 
-def code_digest() -> str:
-    """Digest of the sources that decide a result: of this package and of geometry."""
-    root = Path(__file__).parent.parent
-    sources = sorted(
-        path
-        for package in ("geometry", "solver")
-        for path in (root / package).rglob("*")
-        if path.suffix in {".py", ".edp", ".idp"}
-    )
-    return digest("".join(f"{p.relative_to(root)}\n{p.read_text()}" for p in sources))
+@cache
+def code_digest(*models: str) -> str:
+    """Digest of the sources that decide the results of some models."""
+    files = sorted({file for model in models for file in sources.of_solve(model)})
+    return digest("".join(f"{file}\n{(sources.ROOT / file).read_text()}" for file in files))
 
 
 def _write_parameters(group: Any, case: Case) -> None:

@@ -4,37 +4,31 @@ import csv
 import math
 import tempfile
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.cell import Box
 from geometry.seal import is_sealed, why_none
 from solver import continuity, files, freefem
-from solver.case import NETS, Case
+from solver.case import Case
 from solver.continuity import Solved, States, check_state
-from solver.effects import End, Twist, Volume
+from solver.effects import Volume
 from solver.judge import judged
 from solver.load_path import SWEPT, LoadPath, PathKind, Waypoint
+from solver.models import MODELS
+from solver.models.model import Model
 from solver.record import VARIABLES, Solution, unreached
 from solver.smoothing import marked
 from solver.status import CaseStatus, StateStatus, state_status
 from solver.zero_force import Search, limit_pressure
 
-SOLVER = Path(__file__).parent
 RUBBISH = (ValueError, TypeError, LookupError, ArithmeticError, csv.Error)  # unreadable output
 LARGEST_TEXT, LARGEST_ROW = 2**14, 2**12  # bytes
 LARGEST_FIELDS = 400  # bytes per byte of the mesh
 LARGEST_COUNT = 10**9
 ABOVE = (2.0, 4.0)  # times the limit pressure of the rubber
-FIELDS = {  # columns of fields_<waypoint>.txt, by model
-    "membrane": {"meridian": slice(0, 4)},
-    "solid": {"corners": slice(0, 4), "stress": slice(4, 8)},
-    "cell": {"corners": slice(0, 6), "stress": slice(6, 12), "threads": slice(12, 16)},
-}
 
 
 def solve(
@@ -50,9 +44,9 @@ def solve(
         If it failed for a reason outside the case: a full disk, a signal, a damaged mesh, no
         FreeFEM. That is no result of the case.
     """
-    direct = _direct(case.model)
-    if direct is not None:
-        return marked(case, _with_diameter(case, direct(case))), None
+    in_python = MODELS[case.model].solve
+    if in_python is not None:
+        return marked(case, _with_diameter(case, in_python(case))), None
     if mesh is None or not mesh.exists():
         return failure(case, CaseStatus.MESH_FAILED, f"no mesh at {mesh}"), None
     if reason := why_none(mesh):
@@ -192,7 +186,7 @@ def _follow(
         (work / "waypoints.txt").write_text(waypoint_text(case, way))
         given = flags(case, mesh.resolve())
         try:
-            usage = _run_until(until, limits, case.model, given, work, log.resolve())
+            usage = _run_until(until, limits, MODELS[case.model], given, work, log.resolve())
         except freefem.OutOfTime:
             status, reason = CaseStatus.TIMEOUT, f"stopped after {limits.wall_time:g} s, the limit"
         except freefem.Outside:
@@ -222,7 +216,7 @@ def _follow(
 def _run_until(
     until: float,
     limits: freefem.Limits,
-    model: str,
+    model: Model,
     given: dict[str, str | float],
     work: Path,
     log: Path,
@@ -231,7 +225,7 @@ def _run_until(
 
     def run() -> freefem.Usage:
         left = replace(limits, wall_time=max(until - time.monotonic(), 0))
-        return freefem.run(program_of(model), given, work, log, left, includes(model))
+        return freefem.run(model.program, given, work, log, left, model.includes)
 
     try:
         return run()
@@ -264,28 +258,10 @@ def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solut
     )
 
 
-def program_of(model: str) -> Path:
-    """The FreeFEM program of a model."""
-    return SOLVER / "models" / model / f"{model}.edp"
-
-
-def includes(model: str) -> list[Path]:
-    """Folders in which the program of a model finds its includes."""
-    shared = ("models", "path", "threads", "rubber/mooney_rivlin")
-    return [SOLVER / "models" / model, *(SOLVER / name for name in shared)]
-
-
 def composition(case: Case) -> str:
     """The includes of a program: one per active effect."""
     threads = case.effects.threads if case.muscle.braid else "none"
-    files = [f"threads_{threads}.idp"]
-    if case.model == "membrane":
-        files.append(f"membrane_wall_{case.effects.wall}.idp")
-    if case.model == "solid":
-        files += [f"ends_{case.effects.end}.idp", f"solid_{case.effects.volume}.idp"]
-    if case.model == "cell":
-        layers = case.effects.layers if case.muscle.braid else "none"
-        files.append(f"cell_layers_{layers}.idp")
+    files = [f"threads_{threads}.idp", *MODELS[case.model].composition(case)]
     return "".join(f'include "{name}"\n' for name in files)
 
 
@@ -340,35 +316,8 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
         "layer_stiffness": stiffness,
         "slack_width": slack,
     }
-    if case.model == "solid":
-        if case.compressible:
-            values["kappa"] = case.rubber.kappa
-        if case.effects.end is End.CLAMP:
-            clamp = case.numerics.clamp
-            assert clamp.thread_stiffness is not None
-            assert clamp.inner_stiffness is not None
-            values |= {
-                "clamp_ramp": clamp.ramp * muscle.wall_thickness,
-                "clamp_thread_stiffness": clamp.thread_stiffness,
-                "clamp_inner_stiffness": clamp.inner_stiffness,
-            }
-    if case.model == "cell":
-        values |= _cell_flags(case)
+    values |= MODELS[case.model].flags(case)
     return {k: v if isinstance(v, str | int) else float(v) for k, v in values.items()}
-
-
-def _cell_flags(case: Case) -> dict[str, str | float]:
-    """Flags of solver/models/cell/cell_parameters.idp."""
-    box = Box(case.muscle)
-    return {
-        "kappa": case.rubber.kappa,
-        "mean_radius": box.mean_radius,
-        "sectors": box.sectors,
-        "axial_spacing": box.spacing,
-        "cell_length": box.spacing * case.numerics.cell.repeats,
-        "thread_radius": case.numerics.spread.radius_of(case.thread) if case.thread else 1.0,
-        "twist_free": int(case.effects.twist is Twist.FREE),
-    }
 
 
 def _collect(
@@ -401,19 +350,6 @@ def _collect(
             states[name][:] = np.nan
     if case.effects.volume is Volume.INCOMPRESSIBLE:
         states["unstable_modes"][:] = np.nan  # solid_incompressible.idp counts none
-
-
-def _direct(model: str) -> Callable[[Case], Solution] | None:
-    """The solver of a model that needs no FreeFEM; imported only if it is the one."""
-    if model in NETS:
-        from solver.models.geometric import equation
-
-        return equation.solve
-    if model == "cylinder":
-        from solver.models.cylinder import curve
-
-        return curve.solve
-    return None
 
 
 def _number(path: Path) -> int:
@@ -451,7 +387,7 @@ def _waypoint(row: dict[str, float], way: list[Waypoint], path: LoadPath) -> int
 
 def _fields(model: str, text: bytes) -> dict[str, NDArray[np.float64]]:
     """The fields of a state, by name."""
-    parts = FIELDS[model]
+    parts = MODELS[model].fields
     width = max(part.stop for part in parts.values())
     table = np.loadtxt(text.decode().splitlines(), ndmin=2)
     if not text.endswith(b"\n") or table.shape[1] != width or not np.isfinite(table).all():

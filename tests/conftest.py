@@ -10,14 +10,15 @@ from pathlib import Path
 
 import pytest
 
-from geometry import cell, meridian, section
+from geometry.make import make
 from geometry.muscle import Braid, Muscle
 from solver import freefem
 from solver.case import Case, digest
 from solver.load_path import LoadPath, Waypoint
 from solver.material import MooneyRivlin, Thread
+from solver.models import MODELS
 from solver.record import Solution
-from solver.solve import composition, flags, includes, program_of, solve, waypoint_text
+from solver.solve import composition, flags, solve, waypoint_text
 
 LIMITS = freefem.Limits(wall_time=300, memory=4000)  # a busy machine takes its time
 Rows = list[dict[str, float]]
@@ -83,17 +84,9 @@ def mesh_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Case], Path |
         spec = case.mesh_spec()
         if spec is None:
             return None
-        kind = json.loads(spec)["kind"]
-        path = folder / f"{digest(spec)}{'.msh' if kind == 'section' else '.mesh'}"
+        path = folder / f"{digest(spec)}.{MODELS[case.model].suffix}"
         if not path.exists():
-            if kind == "meridian":
-                meridian.write(case.muscle, case.numerics.meridian, path)
-            elif kind == "cell":
-                asked = json.loads(spec)
-                lines = {"thread_lines": asked["thread_lines"]}
-                cell.write(case.muscle, case.numerics.cell, asked["thread_radius"], path, **lines)
-            else:
-                section.write(case.muscle, case.numerics.section, case.effects.end, path)
+            make(json.loads(spec), path)
         return path
 
     return mesh
@@ -130,12 +123,13 @@ def run_program(
         work = tmp_path_factory.mktemp(case.key)
         (work / "composition.idp").write_text(composition(case))
         (work / "waypoints.txt").write_text(waypoint_text(case, list(way)))
-        program = program or program_of(case.model)
+        model = MODELS[case.model]
+        program = program or model.program
         mesh = mesh_of(case)
         assert mesh is not None
         try:
             given = flags(case, mesh) | more
-            freefem.run(program, given, work, work / "log", LIMITS, includes(case.model))
+            freefem.run(program, given, work, work / "log", LIMITS, model.includes)
         except freefem.FreeFemError as error:
             raise AssertionError(f"{error}\n{freefem.tail(work / 'log')}") from error
         return work

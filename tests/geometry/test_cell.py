@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from geometry import cell
-from geometry.cell import Box, CellMesh
+from geometry.cell import Box
 from geometry.grading import UnbuildableMesh
 from geometry.labels import Boundary
+from geometry.mesh_settings import CellMesh
 from geometry.muscle import Muscle
 
 RADIUS = 0.309  # of the tubes over which threads are spread [mm]

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from geometry.grading import MAX_INTERVALS, MIN_INTERVALS, Grading, UnbuildableMesh
-from geometry.meridian import MeridianMesh
+from geometry.mesh_settings import MeridianMesh, SectionMesh
 from geometry.muscle import Braid, Muscle
-from geometry.section import SectionMesh
 
 MESHES = [
     SectionMesh(),

@@ -5,7 +5,7 @@ import pytest
 
 from geometry import meridian
 from geometry.labels import Boundary
-from geometry.meridian import MeridianMesh
+from geometry.mesh_settings import MeridianMesh
 from geometry.muscle import Muscle
 from solver import freefem
 

@@ -9,8 +9,7 @@ import pytest
 
 from geometry import __main__ as program
 from geometry import gmsh_file, meridian, section, whole
-from geometry.meridian import MeridianMesh
-from geometry.section import SectionMesh
+from geometry.mesh_settings import MeridianMesh, SectionMesh
 
 ROOT = Path(__file__).parents[2]
 

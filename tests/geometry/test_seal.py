@@ -5,9 +5,8 @@ import meshio
 import pytest
 
 from geometry import meridian, section
-from geometry.meridian import MeridianMesh
+from geometry.mesh_settings import MeridianMesh, SectionMesh
 from geometry.seal import is_sealed, seal
-from geometry.section import SectionMesh
 
 
 @pytest.fixture(params=["mesh", "msh"])

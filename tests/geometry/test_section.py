@@ -9,8 +9,9 @@ import pytest
 from geometry import section
 from geometry.grading import UnbuildableMesh
 from geometry.labels import Boundary, Region
+from geometry.mesh_settings import SectionMesh
 from geometry.muscle import Braid, Muscle
-from geometry.section import ENDS, SectionMesh
+from geometry.section import ENDS
 from solver import freefem
 
 

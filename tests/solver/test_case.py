@@ -7,12 +7,14 @@ import pytest
 
 from geometry.muscle import Muscle
 from geometry.refusal import Refusal
-from solver.case import MODELS, Case
+from solver.case import Case
 from solver.effects import CHOICES, Effects
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin
+from solver.models import MODELS as DESCRIPTORS
 from solver.refusal import UnsolvableCase
 
+MODELS = tuple(DESCRIPTORS)
 MESHED = ("membrane", "solid", "cell")
 BUILT = ("cylinder", *MESHED)
 

@@ -10,14 +10,15 @@ from geometry.labels import Boundary
 from solver import solve
 from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import Control, Waypoint
+from solver.models import MODELS
 from solver.record import VARIABLES
-from solver.solve import composition, flags, includes
+from solver.solve import composition, flags
 
 SOLVER = Path(solve.__file__).parent
 FILES = {path.name: path for path in SOLVER.rglob("*.?dp")}
 REQUIRED = re.compile(r'^[^/\n]*require(?:Real|Int|String)\("-(\w+)"\)', re.M)
 INCLUDE = re.compile(r'^\s*include\s+"([\w.]+)"', re.M)
-MESHED = ("membrane", "solid", "cell")
+MESHED = tuple(name for name, model in MODELS.items() if model.mesh)
 
 
 def sources(name: str, composed: str) -> str:
@@ -62,7 +63,7 @@ def test_every_effect_has_its_include(make_case, model, effects):
     expected += solid if model == "solid" else []
     expected += [f"cell_layers_{effects.layers}.idp"] if model == "cell" else []
     assert files == expected
-    assert all(any((folder / file).exists() for folder in includes(model)) for file in files)
+    assert all(any((folder / file).exists() for folder in MODELS[model].includes) for file in files)
 
 
 def test_integers_and_decimals_keep_their_kind(make_case, tmp_path):

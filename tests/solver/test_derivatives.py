@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from geometry.cell import CellMesh
-from geometry.section import SectionMesh
+from geometry.mesh_settings import CellMesh, SectionMesh
 from solver.effects import Effects
 from solver.numerics import Numerics
 

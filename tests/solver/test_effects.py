@@ -5,11 +5,11 @@ import math
 
 import pytest
 
-from solver.case import MODELS
-from solver.effects import EFFECTS, READ_BY, Effects, End, ThreadLaw, active
+from solver.effects import EFFECTS, Effects, End, ThreadLaw, active
 from solver.effects import KINDS as SWITCHES
 from solver.material import Thread
-from solver.numerics import KINDS, NUMERICS_OF_MODEL, Clamp, Newton, Numerics, Slack
+from solver.models import MODELS
+from solver.numerics import KINDS, Clamp, Newton, Numerics, Slack
 from solver.refusal import UnsolvableCase
 
 
@@ -66,7 +66,7 @@ def test_stiff_threads_slacken_over_a_narrower_strain(muscle):
 
 
 def test_every_setting_belongs_to_a_model_or_an_effect():
-    of_models = {name for names in NUMERICS_OF_MODEL.values() for name in names}
+    of_models = {name for model in MODELS.values() for name in model.numerics}
     of_effects = {"clamp", "slack", "spread"}
     assert of_models | of_effects == set(KINDS) == set(vars(Numerics()))
 
@@ -75,12 +75,14 @@ def test_every_setting_belongs_to_a_model_or_an_effect():
 
 
 def test_every_switch_belongs_to_effects_and_models_that_carry_them():
-    assert set(SWITCHES) == set(READ_BY) == set(vars(Effects()))
+    every = MODELS.values()
+    read = {switch for model in every for switch in model.switches}
+    assert set(SWITCHES) == read == set(vars(Effects()))
+    assert {name for model in every for name in model.effects} == set(EFFECTS)
     assert {effect.switch for effect in EFFECTS.values()} == set(SWITCHES)
-    for effect in EFFECTS.values():
-        assert set(effect.models) <= set(MODELS)
+    for name, effect in EFFECTS.items():
         assert set(effect.off) < set(SWITCHES[effect.switch])
-        assert set(READ_BY[effect.switch]) & set(effect.models)
+        assert any(name in m.effects and effect.switch in m.switches for m in every)
 
 
 @pytest.mark.parametrize(

@@ -15,17 +15,19 @@ import pytest
 
 from solver import solve
 from solver.effects import KINDS
+from solver.models import MODELS
 
 TESTS = Path(__file__).parent / "edp"
 SOLVER = Path(solve.__file__).parent
 FILES = {path.name: path.read_text(encoding="utf-8") for path in sorted(SOLVER.rglob("*.[ei]dp"))}
 USERS = FILES | {path.name: path.read_text(encoding="utf-8") for path in TESTS.glob("*.??p")}
 INCLUDES = [name for name in FILES if name.endswith(".idp")]
-MODELS = ("cell_", "membrane_", "solid_")
+PREFIXES = tuple(f"{name}_" for name, model in MODELS.items() if model.mesh)
 VALUES = "|".join({"none", *(value for kind in KINDS.values() for value in kind)})
+COMPOSING = [solve.composition, *(model.composition for model in MODELS.values())]
 COMPOSED = [  # files that solver/solve.py may write into composition.idp
     re.compile(re.sub(r"\{.*?\}", f"({VALUES})", pattern))
-    for pattern in re.findall(r'f"(\w+\{.*?\}\.idp)"', inspect.getsource(solve.composition))
+    for pattern in re.findall(r'f"(\w+\{.*?\}\.idp)"', "".join(map(inspect.getsource, COMPOSING)))
 ]
 
 WORD = r"[A-Za-z]\w*"
@@ -115,9 +117,9 @@ def needs_of(file: str) -> set[str]:
     found = set()
     for name in used(file):
         definers = {other for other in INCLUDES if name in declared(other)[0]}
-        own = next((model for model in MODELS if file.startswith(model)), None)
+        own = next((model for model in PREFIXES if file.startswith(model)), None)
         if own:  # of what each model has, that of its own
-            others = tuple(model for model in MODELS if model != own)
+            others = tuple(model for model in PREFIXES if model != own)
             definers = {d for d in definers if not d.startswith(others)}
             definers = {d for d in definers if d.startswith(own)} or definers
         if not definers or definers & brought(file):

@@ -11,9 +11,9 @@ import pint
 import pytest
 
 from solver import record
-from solver.case import MESHED, MODELS
 from solver.effects import Effects
 from solver.load_path import LoadPath
+from solver.models import MODELS
 from solver.record import VARIABLES, NoRecord, Solution, unreached
 from solver.status import CaseStatus, Flag, StateStatus
 
@@ -119,7 +119,7 @@ def test_numbers_have_units(written):
 @pytest.mark.parametrize("kind", ["isobaric", "isometric", "isotonic"])
 def test_every_number_of_a_case_has_a_unit_that_can_be_read(make_case, model, kind):
     path = LoadPath(kind=kind, held=0.1, stops=(0.1, 0.2))
-    case = make_case(model=model, path=path, fields_at=(0.1,) if model in MESHED else ())
+    case = make_case(model=model, path=path, fields_at=(0.1,) if MODELS[model].fields else ())
     units, numbers = pint.UnitRegistry(), set()
     for name, (value, attributes) in record.parameters(case).items():
         if isinstance(value, str | bool):
@@ -128,14 +128,14 @@ def test_every_number_of_a_case_has_a_unit_that_can_be_read(make_case, model, ki
             numbers.add(name)
             units.Unit(attributes["units"])
     assert {"path/held", "path/stops"} < numbers
-    assert ("fields_at" in numbers) == (model in MESHED)
+    assert ("fields_at" in numbers) == bool(MODELS[model].fields)
 
 
 def test_what_is_a_multiple_says_of_what(make_case):
     """Settings of the meshes scale with the muscle, so they have no length as their unit."""
     path = LoadPath(kind="isobaric", held=0.1, stops=(0.1, 0.2))
     found = {}
-    for model in MESHED:
+    for model in (name for name in MODELS if MODELS[name].mesh):
         found |= record.parameters(make_case(model=model, path=path))
     relative = {name: a["relative_to"] for name, (_, a) in found.items() if "relative_to" in a}
     assert relative == {
@@ -174,7 +174,7 @@ def test_the_passport(written, case):
     with h5py.File(written) as file:
         assert file.attrs["key"] == case.key
         assert file.attrs["case"] == case.canonical()
-        assert file.attrs["code"] == record.code_digest()
+        assert file.attrs["code"] == record.code_digest(case.model)
 
 
 def test_written_again_the_bytes_are_the_same(tmp_path, written, case, solution):

@@ -6,12 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from geometry.mesh_settings import SectionMesh
 from geometry.seal import seal
-from geometry.section import SectionMesh
 from solver import freefem, solve
 from solver.effects import Effects
 from solver.freefem import Limits
 from solver.load_path import LoadPath
+from solver.models import MODELS
 from solver.numerics import Newton, Numerics
 from solver.record import VARIABLES
 from solver.solve import waypoint_text
@@ -164,7 +165,7 @@ def test_without_freefem(make_case, mesh_of, tmp_path, monkeypatch):
 def test_time_limit_keeps_what_was_reached(make_case, mesh_of, tmp_path, monkeypatch):
     """The walk is held up after its second state; both are in the record."""
     slow = tmp_path / "membrane.edp"
-    text = solve.program_of("membrane").read_text()
+    text = MODELS["membrane"].program.read_text()
     walk = (freefem.PATH / "output.idp").read_text()
     assert "states.flush;" in walk
     (tmp_path / "slow_output.idp").write_text(

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from geometry.mesh_settings import SectionMesh
 from geometry.muscle import Muscle
-from geometry.section import SectionMesh
 from solver.effects import Effects, ThreadLaw
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from geometry.cell import CellMesh
+from geometry.mesh_settings import CellMesh
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin

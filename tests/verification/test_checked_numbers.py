@@ -7,7 +7,7 @@ largest force or growth of the curve.
 import numpy as np
 import pytest
 
-from geometry.section import SectionMesh
+from geometry.mesh_settings import SectionMesh
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.material import Thread

@@ -9,8 +9,8 @@ import math
 import numpy as np
 import pytest
 
+from geometry.mesh_settings import SectionMesh
 from geometry.muscle import Muscle
-from geometry.section import SectionMesh
 from solver.case import Case
 from solver.effects import Effects
 from solver.load_path import LoadPath

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
+from geometry.mesh_settings import SectionMesh
 from geometry.muscle import Braid, Muscle
-from geometry.section import SectionMesh
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin, Thread

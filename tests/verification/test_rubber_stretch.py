@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.cell import CellMesh
-from geometry.section import SectionMesh
+from geometry.mesh_settings import CellMesh, SectionMesh
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.models.cylinder.mechanics import Cylinder, State

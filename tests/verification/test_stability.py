@@ -9,9 +9,8 @@ import math
 import numpy as np
 import pytest
 
-from geometry.meridian import MeridianMesh
+from geometry.mesh_settings import MeridianMesh, SectionMesh
 from geometry.muscle import Muscle
-from geometry.section import SectionMesh
 from solver.case import Case
 from solver.effects import Effects
 from solver.load_path import Control, LoadPath, Waypoint

@@ -111,16 +111,14 @@ EDITS = {
     "geometry/meridian.py": {"Meshing.mesh"} | MEMBRANE | GATHER | DRAW91,
     "geometry/whole.py": set(),
     "solver/case.py": FIG90 | MESHED | AFTER,
-    "solver/models/geometric/equation.py": {job for job in FIG90 if "geometric" in job}
-    | GATHER
-    | DRAW90,
+    "solver/net.py": {job for job in FIG90 if "geometric" in job} | GATHER | DRAW90,
     "solver/models/cylinder/curve.py": {job for job in FIG90 if "cylinder" in job}
     | GATHER
     | DRAW90,
     "solver/models/membrane/membrane.edp": MEMBRANE | GATHER | DRAW91,
     "solver/models/solid/solid.edp": SOLID | GATHER | DRAW91,
     "solver/models/solid/ends_clamp.idp": SOLID | GATHER | DRAW91,
-    "solver/path/check.edp": set(),
+    "solver/check.edp": set(),
     "solver/path/newton.idp": MESHED | GATHER | DRAW91,
     "workflow/figures/fig90.py": DRAW90,
     "workflow/figures/style.py": DRAW90 | DRAW91,

@@ -32,7 +32,7 @@ import numpy as np
 import xarray as xr
 
 from geometry.files import atomic_write
-from solver.case import MODELS
+from solver.models import MODELS
 from solver.record import VARIABLES, Solution
 from workflow.data import reference
 from workflow.data.records import Curve

@@ -20,7 +20,6 @@ from workflow.study.errors import StudyError
 if TYPE_CHECKING:
     from workflow.plan.plan import Plan
 
-MODELS = ("membrane", "solid", "cell")
 COMPONENTS = ("rr", "rz", "zz", "tt")
 CELL_COMPONENTS = ("rr", "tt", "zz", "rt", "tz", "rz")
 THREADS = ("thread_stretch_1", "thread_stretch_2", "thread_density_1", "thread_density_2")
@@ -32,8 +31,6 @@ def files(plan: "Plan") -> dict[str, tuple[str, int]]:
     for places in plan.scenes.values():
         for place, key in places.items():
             case = plan.cases[key].case
-            if case.model not in MODELS:
-                continue
             for stop in case.fields_at:
                 names = (place.muscle, place.model, place.variant, place.group)
                 file = "_".join([*names, f"{place.held:g}", f"{stop:g}"])

@@ -17,6 +17,7 @@ from matplotlib.ticker import MultipleLocator, PercentFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from geometry.files import atomic_write
+from solver.models import MODELS
 
 FULL, COLUMN_WIDTH = 7.0, 4.6  # widths [inch]
 LEFT, RIGHT, TOP, BOTTOM = 0.7, 0.14, 0.28, 0.48  # margins around the axes [inch]
@@ -53,23 +54,36 @@ matplotlib.rcParams.update(
     }
 )
 
-SOURCES: dict[str, dict[str, Any]] = {  # models and reference maps
-    "geometric": {"label": "Eq. (1)", "color": "0.45", "linestyle": (0, (5, 2))},
-    "geometric_layers": {
-        "label": "Eq. (1) at the layers",
-        "color": "0.45",
-        "linewidth": 1.1,
-        "linestyle": (0, (1, 1.5)),
-    },
-    "cylinder": {"label": "cylinder", "color": "#cc79a7", "linestyle": (0, (5, 1, 1, 1))},
-    "cell": {
-        "label": "FE cell of the braid",
-        "color": "#b8860b",
-        "linewidth": 1.2,
-        "linestyle": (0, (3, 1, 1, 1, 1, 1)),
-    },
-    "solid": {"label": "FE solid", "color": "#5ba4d6", "linewidth": 2.8},
-    "membrane": {"label": "FE membrane", "color": "black", "linewidth": 1.1},
+# Lines of models, by their rank (solver/models), in the order in which they are drawn; a model of
+# another rank is drawn as OTHER, last. The second is for where the colour says something else.
+LINES: dict[int, tuple[dict[str, Any], dict[str, Any]]] = {
+    0: (
+        {"color": "0.45", "linestyle": (0, (5, 2))},
+        {"linewidth": 1.2, "linestyle": (0, (4, 4)), "marker": ""},
+    ),
+    1: (
+        {"color": "0.45", "linewidth": 1.1, "linestyle": (0, (1, 1.5))},
+        {"linewidth": 1.2, "linestyle": (0, (1, 1.5)), "marker": ""},
+    ),
+    2: (
+        {"color": "#cc79a7", "linestyle": (0, (5, 1, 1, 1))},
+        {"linewidth": 1.2, "linestyle": (0, (5, 1, 1, 1)), "marker": ""},
+    ),
+    5: (
+        {"color": "#b8860b", "linewidth": 1.2, "linestyle": (0, (3, 1, 1, 1, 1, 1))},
+        {"linewidth": 1.2, "linestyle": (0, (3, 1, 1, 1, 1, 1)), "marker": ""},
+    ),
+    4: (
+        {"color": "#5ba4d6", "linewidth": 2.8},
+        {"linewidth": 2.8, "alpha": 0.5, "marker": ""},
+    ),
+    3: ({"color": "black", "linewidth": 1.1}, {"linewidth": 1.1}),
+}
+OTHER: dict[str, Any] = {"color": "#7b3294", "linewidth": 1.2, "linestyle": (0, (1, 1))}
+PLACE = {rank: place for place, rank in enumerate(LINES)}
+OF_MODELS = sorted(MODELS.values(), key=lambda model: PLACE.get(model.rank, len(PLACE)))
+SOURCES: dict[str, dict[str, Any]] = {  # models and reference maps, by name
+    **{m.name: {"label": m.label, **LINES.get(m.rank, (OTHER,))[0]} for m in OF_MODELS},
     "festo_musclesim": {
         "label": "Festo MuscleSIM",
         "color": "#d55e00",
@@ -83,14 +97,7 @@ SOURCES: dict[str, dict[str, Any]] = {  # models and reference maps
         "marker": "o",
     },
 }
-COMPARED: dict[str, dict[str, Any]] = {  # models where the colour says something else
-    "geometric": {"linewidth": 1.2, "linestyle": (0, (4, 4)), "marker": ""},
-    "geometric_layers": {"linewidth": 1.2, "linestyle": (0, (1, 1.5)), "marker": ""},
-    "cylinder": {"linewidth": 1.2, "linestyle": (0, (5, 1, 1, 1)), "marker": ""},
-    "cell": {"linewidth": 1.2, "linestyle": (0, (3, 1, 1, 1, 1, 1)), "marker": ""},
-    "solid": {"linewidth": 2.8, "alpha": 0.5, "marker": ""},
-    "membrane": {"linewidth": 1.1},
-}
+COMPARED = {model.name: LINES[model.rank][1] for model in OF_MODELS if model.rank in LINES}
 SERIES: tuple[dict[str, Any], ...] = (  # muscles, loads, materials compared in one plot
     {"color": "#0072b2", "marker": "o"},
     {"color": "#d55e00", "marker": "s"},
@@ -99,9 +106,6 @@ SERIES: tuple[dict[str, Any], ...] = (  # muscles, loads, materials compared in 
     {"color": "black", "marker": "v"},
     {"color": "#b8860b", "marker": "P"},
 )
-
-
-OTHER: dict[str, Any] = {"color": "#7b3294", "linewidth": 1.2, "linestyle": (0, (1, 1))}
 
 
 def look_of(source: str) -> dict[str, Any]:

@@ -13,8 +13,7 @@ from math import nan
 from pathlib import Path
 from typing import Any
 
-from geometry.meridian import MeridianMesh
-from geometry.section import SectionMesh
+from geometry.mesh_settings import MeridianMesh, SectionMesh
 
 MESHES: dict[str, dict[str, Any]] = {  # that were measured: what differs from the default numerics
     "coarser": {"section": SectionMesh(cap_step=2, growth=2, body_step=4)},

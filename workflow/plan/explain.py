@@ -1,10 +1,11 @@
 """What ``python -m workflow explain`` says of every scene: its wishes, what it gets, and why."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import isnan
 
 from solver.case import Case
 from solver.effects import EFFECTS
+from solver.models import MODELS
 from workflow.plan import effect_costs, model_choice
 from workflow.plan.model_choice import Choice, Estimate
 from workflow.plan.plan import Place, Plan
@@ -21,8 +22,8 @@ def lines(plan: Plan) -> Iterator[str]:
         yield ""
         yield f"{name}: {len(set(places.values()))} cases"
         yield f"  wants    {_wish(scene, choice)}"
-        yield f"  regimes  {', '.join(choice.regimes)}"
-        yield from _models(scene, choice)
+        yield f"  regimes  {', '.join(model_choice.regimes(plan.study, scene))}"
+        yield from _models(scene, choice, model_choice.estimates(plan.study, scene))
         for model, case in cases.items():
             yield from _effects(model, case, scene)
         yield from _cases(plan, name, places)
@@ -42,7 +43,7 @@ def _wish(scene: Scene, choice: Choice) -> str:
     )
 
 
-def _models(scene: Scene, choice: Choice) -> Iterator[str]:
+def _models(scene: Scene, choice: Choice, estimates: Sequence[Estimate]) -> Iterator[str]:
     """The ladder with expected errors and costs; what was taken is marked."""
     chosen = choice.chosen.rung.name if choice.chosen else None
     how = "cheapest that is exact enough" if chosen else "named by the scene"
@@ -51,10 +52,14 @@ def _models(scene: Scene, choice: Choice) -> Iterator[str]:
     if {"stress", "deformed_shape"} & set(scene.quantities):
         how += "; errors are those of the force, fields are not measured"
     yield f"  models   {how}"
-    for estimate in choice.estimates:
+    for estimate in estimates:
         rung = estimate.rung
         taken = rung.name == chosen or (chosen is None and rung.name in choice.models)
         yield f"    {'>' if taken else ' '} {rung.name:15} {_estimate(estimate)}"
+    weighed = {estimate.rung.model for estimate in estimates}
+    for model in choice.models:
+        if model not in weighed:
+            yield f"    > {model:15} not weighed"
 
 
 def _estimate(estimate: Estimate) -> str:
@@ -69,7 +74,7 @@ def _estimate(estimate: Estimate) -> str:
 def _effects(model: str, case: Case, scene: Scene) -> Iterator[str]:
     """Which effects are on in a model, and why the others are off."""
     on = case.active_effects
-    carried = [name for name, effect in EFFECTS.items() if model in effect.models]
+    carried = [name for name in EFFECTS if name in MODELS[model].effects]
     off = [
         f"{name} ({'by the scene' if name in scene.effects else 'by its switch'})"
         for name in carried

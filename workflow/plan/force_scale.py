@@ -4,7 +4,7 @@ An error is judged against the largest force of its own curve. A scene that begi
 contraction has smaller forces than a curve from 0, so the same error in newtons is a larger share.
 """
 
-from solver.models.geometric import equation
+from solver import net
 from workflow.plan.effect_costs import MeasuredEffects
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.schema import Scene
@@ -48,7 +48,7 @@ def _size(muscle: StudiedMuscle) -> float:
 
 
 def _eq_1(muscle: StudiedMuscle, pressure: float, contraction: float) -> float:
-    return abs(float(equation.force(muscle.muscle, pressure, contraction)))
+    return abs(float(net.force(muscle.muscle, pressure, contraction)))
 
 
 def _force(muscle: StudiedMuscle, pressure: float, contraction: float, taken: float) -> float:

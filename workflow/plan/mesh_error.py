@@ -18,17 +18,23 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.case import MESHED, Case
+from geometry.grading import Grading
+from solver.case import Case
 from solver.effects import Effects
 from solver.load_path import PathKind
-from solver.numerics import Numerics
+from solver.models import MODELS
+from solver.numerics import KINDS, Numerics
 from solver.record import Solution
 
 FILE = Path(__file__).with_suffix(".csv")
 DATA = ("workflow/plan/mesh_error.csv",)
 SETTINGS = ("model", "end", "cap_step", "growth", "body_step", "rows")
 COLUMNS = (*SETTINGS, "refinement", "force_error", "diameter_error", "curves", "worst")
-PART = {"membrane": "meridian", "solid": "section"}  # of the numerics, that is the mesh
+PART = {  # of the numerics, that is the mesh, of models whose mesh is a grading
+    name: model.mesh
+    for name, model in MODELS.items()
+    if model.mesh and issubclass(KINDS[model.mesh], Grading)
+}
 ERRORS = {"force": "force_error", "inner_diameter_inflated": "diameter_error"}
 
 
@@ -47,7 +53,7 @@ def error(case: Case, solution: Solution, variable: str) -> NDArray[np.float64]:
     mesh; NaN where nothing is known of the mesh or the variable.
     """
     values = solution.states[variable]
-    if case.model not in MESHED:
+    if MODELS[case.model].mesh is None:
         return np.where(np.isfinite(values), 0.0, np.nan)
     if variable == "contraction" and case.path.kind is PathKind.ISOTONIC:
         per_contraction = np.abs(solution.states["stiffness"]) * case.muscle.length
@@ -68,7 +74,7 @@ def _share(case: Case, variable: str) -> float:
 def share_of(model: str, effects: Effects, numerics: Numerics, variable: str = "force") -> float:
     """Largest error found on a mesh of a model, as a share; 0 without a mesh, NaN if not known."""
     if model not in PART:
-        return np.nan if model in MESHED else 0.0
+        return np.nan if MODELS[model].mesh else 0.0
     if variable not in ERRORS:
         return np.nan
     settings, refinement = settings_of(model, effects, numerics)
@@ -82,7 +88,7 @@ def share_of(model: str, effects: Effects, numerics: Numerics, variable: str = "
 def settings_of(model: str, effects: Effects, numerics: Numerics) -> tuple[tuple[str, ...], int]:
     """What names a family of meshes in the table, as it stands there; and the refinement."""
     mesh = getattr(numerics, PART[model])
-    end = str(effects.end) if model == "solid" else ""
+    end = str(effects.end) if "end" in MODELS[model].switches else ""
     steps = (f"{value:g}" for value in (mesh.cap_step, mesh.growth, mesh.body_step))
     rows = " ".join(map(str, getattr(mesh, "rows", ())))
     return (model, end, *steps, rows), mesh.refinement

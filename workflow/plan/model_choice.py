@@ -11,11 +11,12 @@ that does; the default meshes are those for the default tolerance.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from math import inf, isnan
 from typing import Any
 
-from solver.effects import EFFECTS, KINDS, READ_BY, Effects, active
+from solver.effects import EFFECTS, KINDS, Effects, active
+from solver.models import MODELS
 from solver.numerics import Numerics
 from solver.refusal import UnsolvableCase
 from workflow.plan.effect_costs import MESHES, MeasuredEffect, MeasuredEffects, load
@@ -40,21 +41,24 @@ class Rung:
     mesh: str
     above: str | None
     step: str
+    only_for: str = ""  # effect that must be asked for
 
 
-LADDER = {  # cheapest first
-    rung.name: rung
-    for rung in (
-        Rung("geometric", "geometric", "default", "cylinder", "all but pressure on the net"),
-        Rung("cylinder", "cylinder", "default", "membrane", "end_caps"),
-        Rung("membrane", "membrane", "default", "solid", "cap_geometry"),
-        Rung("solid, coarser", "solid", "coarser", "solid, finer", "coarse mesh of solid"),
-        Rung("solid", "solid", "default", "solid, finer", "mesh of solid"),
-        Rung("solid, finer", "solid", "finer", None, "mesh of solid"),
-    )
-}
-# Off the ladder, whose models all smear the threads: it has no caps, and is dear.
-OF_CELL = Rung("cell", "cell", "default", "membrane", "end_caps")
+def _rungs() -> Iterator[Rung]:
+    """The weighed models, cheapest first; the fullest on coarser and finer meshes too."""
+    for name, model in MODELS.items():
+        if not model.lacks:
+            continue
+        if model.fuller:
+            yield Rung(name, name, "default", model.fuller, model.lacks, model.only_for)
+            continue
+        finer = f"{name}, finer"
+        yield Rung(f"{name}, coarser", name, "coarser", finer, f"coarse {model.lacks}")
+        yield Rung(name, name, "default", finer, model.lacks)
+        yield Rung(finer, name, "finer", None, model.lacks)
+
+
+RUNGS = {rung.name: rung for rung in _rungs()}
 DISCRETE = "discrete_threads"
 SMEARED = "isobaric", DISCRETE  # path and effect: measured at constant pressure only
 
@@ -79,28 +83,24 @@ class Choice:
     ----------
     models : names, one if chosen
     variants : by the label they have in the dataset
-    chosen : None where the scene names its models
+    estimates, chosen : none where the scene names its models
     """
 
     models: tuple[str, ...]
     variants: dict[str, Variant]
-    regimes: tuple[str, ...]
     tolerance: float
     estimates: tuple[Estimate, ...]
     chosen: Estimate | None
 
 
 def choose(study: Study, scene: Scene, measured: MeasuredEffects | None = None) -> Choice:
-    """The models and variants of a scene with a path."""
-    measured = load() if measured is None else measured
-    touched = tuple(regimes(study, scene))
+    """The models and variants of a scene with a path; what it names itself is not weighed."""
     tolerance = TOLERANCE if scene.tolerance is None else scene.tolerance
-    estimates = tuple(
-        _estimate(study, scene, rung, touched, measured) for rung in (*LADDER.values(), OF_CELL)
-    )
+    weighed: tuple[Estimate, ...] = ()
     chosen = None
     if scene.models is None:
-        able = [e for e in estimates if not e.refused]
+        weighed = estimates(study, scene, measured)
+        able = [e for e in weighed if not e.refused]
         good = [e for e in able if not e.missing and is_enough(e, tolerance)]
         best = sorted(able, key=lambda e: (e.missing, isnan(e.error), e.error))
         chosen = next(iter(good or best), None)
@@ -110,7 +110,16 @@ def choose(study: Study, scene: Scene, measured: MeasuredEffects | None = None) 
         for name in scene.variants
         for label, made in [_variant(study.variants[name], name, scene, chosen)]
     }
-    return Choice(models, variants, touched, tolerance, estimates, chosen)
+    return Choice(models, variants, tolerance, weighed, chosen)
+
+
+def estimates(
+    study: Study, scene: Scene, measured: MeasuredEffects | None = None
+) -> tuple[Estimate, ...]:
+    """What every weighed model would give a scene."""
+    measured = load() if measured is None else measured
+    touched = tuple(regimes(study, scene))
+    return tuple(_estimate(study, scene, rung, touched, measured) for rung in RUNGS.values())
 
 
 def is_enough(estimate: Estimate, tolerance: float) -> bool:
@@ -133,7 +142,7 @@ def switched(effects: Effects, wanted: Mapping[str, str]) -> Effects:
 
 def readable(model: str, effects: Effects) -> Effects:
     """The same effects with the switches that a model does not read as they are by default."""
-    own = {f.name: getattr(effects, f.name) for f in fields(Effects) if model in READ_BY[f.name]}
+    own = {name: getattr(effects, name) for name in MODELS[model].switches}
     return Effects(**own)
 
 
@@ -166,16 +175,17 @@ def _estimate(
 ) -> Estimate:
     assert scene.path is not None
     refused = refusal(rung.model, scene)
-    if rung.model == "geometric" and any(study.muscles[m].thread is None for m in scene.muscles):
+    bare = any(study.muscles[name].thread is None for name in scene.muscles)
+    if bare and MODELS[rung.model].needs_braid:
         refused = refused or "needs a braid"
-    if rung is OF_CELL and scene.effects.get(DISCRETE) != "on":
-        refused = refused or f"only where {DISCRETE} is on"
+    if rung.only_for and scene.effects.get(rung.only_for) != "on":
+        refused = refused or f"only where {rung.only_for} is on"
     errors, seconds, missing = [], [], False
     for regime in touched:
         error, lost = _error(study, scene, rung, regime, measured)
         errors.append(error)
         missing |= lost
-        if rung is OF_CELL:
+        if rung.only_for:
             seconds.append(measured[(regime, *SMEARED)].seconds_with)
             continue
         last = measured[regime, scene.path, rung.step]
@@ -190,7 +200,7 @@ def _error(
     """Expected error of a rung: the sum of the steps down to it; and whether states are lost."""
     assert scene.path is not None
     factor = error_factor(study, scene, measured, regime)
-    total = _of_smearing(study, scene, measured, regime, factor) if rung is not OF_CELL else 0.0
+    total = _of_smearing(study, scene, measured, regime, factor) if not rung.only_for else 0.0
     missing = False
     at: Rung | None = rung
     while at is not None:
@@ -201,7 +211,7 @@ def _error(
         else:
             total += change
         missing |= at.above is not None and effect.missing > 0
-        at = LADDER[at.above] if at.above else None
+        at = RUNGS[at.above] if at.above else None
     return total, missing
 
 

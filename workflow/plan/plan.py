@@ -14,8 +14,9 @@ from pathlib import Path
 from geometry import section
 from geometry.grading import UnbuildableMesh
 from geometry.muscle import Muscle
-from solver.case import MESHED, NETS, Case, digest
+from solver.case import Case, digest
 from solver.load_path import LoadPath
+from solver.models import MODELS
 from workflow.plan import model_choice
 from workflow.study.contents import Study, Variant
 from workflow.study.errors import Findings, StudyError
@@ -50,8 +51,7 @@ class Place:
 def mesh_file(case: Case) -> str | None:
     """File name of the mesh of a case, None for a model without."""
     spec = case.mesh_spec()
-    suffix = "msh" if MESHED.get(case.model) == "section" else "mesh"
-    return f"{digest(spec)}.{suffix}" if spec else None
+    return f"{digest(spec)}.{MODELS[case.model].suffix}" if spec else None
 
 
 @dataclass(frozen=True)
@@ -220,9 +220,9 @@ def _curves(
 
 def _check_models(study: Study, name: str, scene: Scene, choice: model_choice.Choice) -> None:
     """Refuse effects that a named model, or every model, cannot have."""
-    found = {e.rung.model: e.refused for e in choice.estimates}
-    if choice.models:
-        found = {model: model_choice.refusal(model, scene) for model in choice.models}
+    found = {model: model_choice.refusal(model, scene) for model in choice.models}
+    if not choice.models:
+        found = {e.rung.model: e.refused for e in choice.estimates}
     reasons = [f"{model} {reason}" for model, reason in found.items() if reason]
     if reasons:
         key = "effects" if scene.effects else "quantities"
@@ -237,8 +237,7 @@ def _case(study: Study, name: str, scene: Scene, place: Place, variant: Variant)
         effects = model_choice.readable(place.model, effects)
     keys, checked = ("scenes", name), study.source.checked
     assert scene.path is not None
-    # Eq. (1) has its zero of force at no pressure but 0, so no threshold
-    has_zero = place.model not in NETS or place.group == "isobaric"
+    has_zero = MODELS[place.model].threshold or place.group == "isobaric"
     path = checked(
         keys,
         LoadPath,
@@ -280,7 +279,7 @@ MESH_BY = {
 def _check_mesh(study: Study, place: Place, variant: Variant) -> None:
     """Refuse a muscle that cannot be meshed so; named is the key that was written."""
     muscle = study.muscles[place.muscle].muscle
-    kind = MESHED.get(place.model, "")
+    kind = MODELS[place.model].mesh or ""
     try:
         if kind == "section":
             section.stations(muscle, variant.numerics.section, variant.effects.end)

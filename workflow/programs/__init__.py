@@ -2,7 +2,7 @@
 
 A module has a docstring that says what it does, ``add_arguments(parser)`` and ``run(given)``, which
 returns the exit status. Rules call some of them, people the others; its imports are what a job of
-such a rule depends on (workflow/run/sources.py).
+such a rule depends on (solver/sources.py).
 """
 
 import argparse

@@ -15,12 +15,13 @@ from pathlib import Path
 CHECKOUT = workflow.basedir
 sys.path.insert(0, CHECKOUT)
 
-from solver.case import MODELS, digest
+from solver import sources as closure
+from solver.case import digest
+from solver.record import code_digest
 from workflow.analyses import analysis
 from workflow.analyses.registry import ANALYSES
 from workflow.data import bench, paraview
 from workflow.plan.plan import read
-from workflow.run import sources as closure
 from workflow.study.errors import StudyError
 from workflow.study.figure_needs import drawn
 from workflow.study.schema import FORCE_MAPS
@@ -73,22 +74,14 @@ def sources(*modules):
     return [of_checkout(file) for file in closure.sources(*modules)]
 
 
-def matching(*patterns, without=()):
-    """Files of this checkout by some patterns, except those named."""
-    found = {of_checkout(path) for pattern in patterns for path in Path(CHECKOUT).glob(pattern)}
-    return sorted(found.difference(without))
-
-
 def record_of(case):
     return f"results/cases/{case}.h5"
 
 
 def mesh_sources(wildcards):
-    """All of geometry/ but what makes other kinds of files."""
+    """Sources of a kind of mesh."""
     kind = json.loads(spec_of_mesh(wildcards))["kind"]
-    kinds = ("meridian", "section", "cell", "whole")
-    others = [of_checkout(f"geometry/{other}.py") for other in kinds if other != kind]
-    return matching("geometry/*.py", without=others)
+    return [of_checkout(file) for file in closure.of_mesh(kind)]
 
 
 ANALYSED = {}  # cases of the analyses that are asked for, by key
@@ -121,23 +114,9 @@ def spec_of_mesh(wildcards):
     return next(a for a in ANALYSED.values() if a.mesh == wildcards.mesh).case.mesh_spec()
 
 
-# Of all sources of the solver, those that only one model reads.
-MODEL_SOURCES = {model: matching(f"solver/models/{model}/*.*") for model in MODELS}
-MODEL_SOURCES["cell"] += matching("geometry/cell.py")
-
-
 def solver_sources(wildcards):
-    """Sources that decide the result of a case; what geometry makes of it is in its mesh."""
-    case = case_of(wildcards.case)
-    edp = ["solver/**/*.edp", "solver/**/*.idp"] if case.mesh else []
-    others = [
-        f for model, files in MODEL_SOURCES.items() if model != case.case.model for f in files
-    ]
-    read = ("muscle", "refusal", "cell", "seal", "attempt", "files")
-    geometry = [f"geometry/{name}.py" for name in read]
-    return matching(
-        "solver/**/*.py", *geometry, *edp, without=[*others, of_checkout("solver/path/check.edp")]
-    )
+    """Sources that decide the result of a case."""
+    return [of_checkout(file) for file in closure.of_solve(case_of(wildcards.case).case.model)]
 
 
 def figures():

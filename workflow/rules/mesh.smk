@@ -30,10 +30,7 @@ rule mesh:
 
 rule muscle:
     input:
-        sources=matching(
-            "geometry/*.py",
-            without=[of_checkout(f"geometry/{kind}.py") for kind in ("meridian", "section")],
-        ),
+        sources=[of_checkout(file) for file in closure.of_mesh("whole")],
     output:
         "results/muscles/{muscle}.step",
     log:

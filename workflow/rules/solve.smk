@@ -24,10 +24,11 @@ rule solve:
         memory=PLAN.study.memory,
     params:
         case=lambda wildcards: case_of(wildcards.case).case.canonical(),
+        code=lambda wildcards: code_digest(case_of(wildcards.case).case.model),
         mesh=lambda wildcards, input: ["--mesh", input.mesh] if input.mesh else [],
     message:
         "Solving {LABEL:{wildcards.case}}"
     shell:
-        "python -m solver --case {params.case:q} {params.mesh:q} --record {output.record:q}"
+        "python -m solver --case {params.case:q} {params.mesh:q} --code {params.code} --record {output.record:q}"
         " --cost {output.cost:q} --log {log:q}"
         " --wall-time {resources.wall_time} --memory {resources.memory}"

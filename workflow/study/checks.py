@@ -8,8 +8,8 @@ from typing import Any
 
 from geometry.muscle import Braid, Muscle
 from geometry.refusal import Refusal
+from solver import net
 from solver.load_path import LoadPath
-from solver.models.geometric import equation
 from workflow.study import figure_needs, units
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError, choices, shown
@@ -225,7 +225,7 @@ def _unusual_load(
     """Loads that are nothing, or far too much, for the muscles of a scene."""
     loads = [abs(load) for load in asked.load or () if load]
     pulls = [
-        abs(float(equation.force(made.muscle, max(asked.pressure), 0.0)))
+        abs(float(net.force(made.muscle, max(asked.pressure), 0.0)))
         for made in known
         if made.thread is not None and asked.pressure
     ]

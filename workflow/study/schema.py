@@ -13,31 +13,34 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from pydantic_core import PydanticCustomError
 
 from geometry.refusal import is_count
-from solver.case import MESHED, MODELS, NETS
-from solver.effects import EFFECTS, READ_BY, Effects
+from solver.effects import EFFECTS, Effects
 from solver.load_path import PathKind
+from solver.models import MODELS
 from solver.numerics import KINDS
 from workflow.study.errors import choices, shown
 from workflow.study.values import POSSIBLE, expand, is_possible
 
-BUILT = tuple(model for model in MODELS if model not in NETS)
+DATA = ("solver/models/*/model.py",)  # all models are asked what they are
 LONGEST_NAME = 64
 NAME = re.compile(rf"[A-Za-z0-9_][A-Za-z0-9_.-]{{0,{LONGEST_NAME - 1}}}")
 NAME_RULE = f"letters, digits, _ . and -, at most {LONGEST_NAME}, not beginning with . or -"
-QUANTITIES = {
-    # models that can give it; those from stress on are solved for or written only when asked for
-    "force": MODELS,
-    "contraction": MODELS,
-    "inner_diameter": MODELS,
-    "outer_diameter": BUILT,
-    "thread_stretch": BUILT,
-    "volume": tuple(MESHED),
-    "stiffness": tuple(MESHED),
-    "twist": READ_BY["twist"],
-    "stress": ("solid", "cell"),
-    "deformed_shape": ("membrane", "solid", "cell"),
-    "threshold_pressure": MODELS,  # of zero force, on an isometric path
-    "free_contraction": MODELS,  # of zero force, on an isobaric path
+ASKED = (  # those from stress on are solved for or written only when asked for
+    "force",
+    "contraction",
+    "inner_diameter",
+    "outer_diameter",
+    "thread_stretch",
+    "volume",
+    "stiffness",
+    "twist",
+    "stress",
+    "deformed_shape",
+)
+FITTED = tuple(m for m in MODELS if MODELS[m].mesh and not MODELS[m].only_for)  # not too dear
+OF_ZERO_FORCE = ("threshold_pressure", "free_contraction")  # on an isometric, an isobaric path
+QUANTITIES = {  # models that can give it
+    **{name: tuple(m for m in MODELS if name in MODELS[m].quantities) for name in ASKED},
+    **{name: tuple(MODELS) for name in OF_ZERO_FORCE},
 }
 FORCE_MAPS = ("festo_musclesim", "martens2017")  # read by workflow/data/reference.py
 MOST_THREADS = 10_000  # more is a typing error
@@ -262,7 +265,7 @@ class CalibrationEntry(Entry):
 
     muscle: Name
     reference: str | None = None  # else the first map of the muscle
-    model: _one_of("membrane", "solid") = "membrane"
+    model: _one_of(*FITTED) = "membrane"
     fit: _some_of("thread_stiffness", "c10", "c01") = ("thread_stiffness",)
     bounds: BoundsEntry = BoundsEntry()
     fit_pressure: Values = (0.3,)  # MPa

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from geometry import cell
-from geometry.cell import Box, CellMesh
+from geometry.cell import Box
+from geometry.mesh_settings import CellMesh
 from solver.record import Solution, unreached
 from solver.status import CaseStatus, StateStatus
 from workflow.analyses import additions

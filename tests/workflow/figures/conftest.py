@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from geometry.muscle import Braid, Muscle
-from solver import record
+from solver import net, record
 from solver.case import Case
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin, Thread
-from solver.models.geometric import equation
 from solver.status import StateStatus
 from workflow.data.states import SceneData
 from workflow.plan.plan import plan
@@ -39,7 +38,7 @@ SECTION = {  # two triangles: a wall from R = 10 to 12 and Z = 0 to 150, not def
 def solve(case: Case) -> record.Solution:
     """What Eq. (1) says of a case; less, with an inflated diameter and fields, for other models."""
     plain = replace(case, model="geometric", fields_at=())
-    solution = equation.solve(plain)
+    solution = net.solve(plain)
     states = dict(solution.states)
     if case.model != "geometric":
         states["force"] = KNOCKED_DOWN * states["force"]

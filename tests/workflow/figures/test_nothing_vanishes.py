@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from solver import record
-from solver.case import MODELS
+from solver.models import MODELS
 from solver.status import Flag, StateStatus
 from workflow.data.states import FLAGS, GOOD, SHOWN, SceneData
 from workflow.figures import curves, style

@@ -18,9 +18,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from geometry.meridian import MeridianMesh
+from geometry.mesh_settings import MeridianMesh, SectionMesh
 from geometry.muscle import Muscle
-from geometry.section import SectionMesh
 from solver.case import Case
 from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import LoadPath, PathKind

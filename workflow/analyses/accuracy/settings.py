@@ -1,8 +1,6 @@
 """What accuracy is measured by: the normal condition, meshes, steps, tolerances."""
 
-from geometry.cell import CellMesh
-from geometry.meridian import MeridianMesh
-from geometry.section import SectionMesh
+from geometry.mesh_settings import CellMesh, MeridianMesh, SectionMesh
 from workflow.plan.effect_costs import MESHES
 
 MUSCLE = "dmsp20"  # of the study file

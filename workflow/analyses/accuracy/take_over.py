@@ -6,6 +6,7 @@ from pathlib import Path
 
 from geometry.files import atomic_write
 from solver import record
+from solver.models import MODELS
 from workflow.plan.mesh_error import COLUMNS, FILE
 from workflow.study.errors import StudyError
 
@@ -26,7 +27,7 @@ def take_over(table_file: Path, path: Path = FILE) -> None:
     for row in rows:
         families.setdefault((*_written(row), f"{float(row['refinement']):g}"), []).append(row)
     with atomic_write(path) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
-        stream.write(f"# {time.strftime('%Y-%m-%d')}, code {record.code_digest()}\n")
+        stream.write(f"# {time.strftime('%Y-%m-%d')}, code {record.code_digest(*MODELS)}\n")
         table = csv.writer(stream, lineterminator="\n")
         table.writerow(COLUMNS)
         for key, family in families.items():

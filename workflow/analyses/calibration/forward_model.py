@@ -1,5 +1,6 @@
 """Forces of a muscle with other values of its stiffnesses, computed at once."""
 
+import json
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -7,17 +8,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry import meridian, section
+from geometry.make import make
 from solver import freefem
-from solver.case import MESHED, Case
+from solver.case import Case, digest
 from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
+from solver.models import MODELS
 from solver.solve import solve
 from solver.status import StateStatus
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
 
-DATA = ("solver/**/*.[ei]dp",)  # whichever model a calibration names
+# Whichever model a calibration names.
+DATA = ("geometry/*.py", "solver/**/*.py", "solver/**/*.[ei]dp")
 
 
 def changed(muscle: StudiedMuscle, values: Mapping[str, float]) -> StudiedMuscle:
@@ -68,10 +71,10 @@ class ForwardModel:
         return self.solved[case.key]
 
     def _mesh(self, case: Case) -> Path | None:
-        kind = MESHED.get(case.model)
-        path = self.folder / f"{kind}.{'msh' if kind == 'section' else 'mesh'}"
-        if kind == "meridian" and not path.exists():
-            meridian.write(case.muscle, case.numerics.meridian, path)
-        if kind == "section" and not path.exists():
-            section.write(case.muscle, case.numerics.section, case.effects.end, path)
-        return path if kind else None
+        spec = case.mesh_spec()
+        if spec is None:
+            return None
+        path = self.folder / f"{digest(spec)}.{MODELS[case.model].suffix}"
+        if not path.exists():
+            make(json.loads(spec), path)
+        return path

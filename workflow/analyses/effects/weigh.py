@@ -7,6 +7,7 @@ from datetime import date
 from pathlib import Path
 
 from geometry.files import atomic_write
+from solver.models import MODELS
 from solver.record import code_digest
 from workflow.analyses import analysis
 from workflow.analyses.analysis import Solved
@@ -35,7 +36,7 @@ def measure(study: str, costs: Path = COSTS, file: Path = FILE) -> None:
             row[f"seconds_{side}"] = float(f"{spent:.2g}")
     names = [f.name for f in fields(MeasuredEffect)]
     with atomic_write(file) as beside, beside.open("w", newline="") as stream:
-        stream.write(f"# study of effects of {date.today()}, code {code_digest()}\n")
+        stream.write(f"# study of effects of {date.today()}, code {code_digest(*MODELS)}\n")
         writer = csv.DictWriter(stream, names, extrasaction="ignore", lineterminator="\n")
         writer.writeheader()
         writer.writerows(

@@ -13,14 +13,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.stats import qmc
 
-from geometry.meridian import MeridianMesh
+from geometry.mesh_settings import MeridianMesh, SectionMesh
 from geometry.muscle import Braid, Muscle
-from geometry.section import SectionMesh
+from solver import net
 from solver.case import Case
 from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import LoadPath, PathKind
 from solver.material import MooneyRivlin, Thread
-from solver.models.geometric import equation
 from solver.numerics import Numerics
 from workflow.analyses.analysis import AnalysisCase
 from workflow.study.contents import Study
@@ -203,7 +202,7 @@ def _path(muscle: Muscle, pressure: float, choice: float) -> LoadPath:
         return LoadPath(kind=PathKind.ISOBARIC, held=round(pressure, 6), stops=stops)
     if choice < 4:
         return LoadPath(kind=PathKind.ISOMETRIC, held=round(0.2 * share, 4), stops=rising)
-    load = 0.6 * share * abs(float(equation.force(muscle, pressure, 0.0)))
+    load = 0.6 * share * abs(float(net.force(muscle, pressure, 0.0)))
     return LoadPath(kind=PathKind.ISOTONIC, held=round(load, 3), stops=rising)
 
 

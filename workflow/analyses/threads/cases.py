@@ -14,7 +14,7 @@ picture     one state of both rubbers on the finest mesh, with its fields, threa
 from collections.abc import Iterator
 from dataclasses import replace
 
-from geometry.cell import CellMesh
+from geometry.mesh_settings import CellMesh
 from geometry.muscle import Muscle
 from solver.case import Case
 from solver.effects import Effects, Layers, Twist

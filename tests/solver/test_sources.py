@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from workflow.run import sources as module
-from workflow.run.sources import sources
+from solver import sources as module
+from solver.sources import sources
 
 TRACER = """\
 import json, pathlib, sys
@@ -132,7 +132,7 @@ def test_programs_open_nothing_else(project, tmp_path, modules, arguments):
     )
     status, opened = json.loads(done.stdout.splitlines()[-1])
     asked = subprocess.run(
-        [sys.executable, "-c", f"from workflow.run.sources import *; print(*sources(*{modules}))"],
+        [sys.executable, "-c", f"from solver.sources import *; print(*sources(*{modules}))"],
         cwd=project.folder,
         capture_output=True,
         text=True,

@@ -7,7 +7,7 @@ too, and what a module says of itself::
     DATA = ("workflow/plan/mesh_error.csv",)   files that it reads, as patterns from the checkout
 
 What is found by name at run time (the figure of a scene, an analysis, a model) no import statement
-names: whoever asks names that module as well.
+names: whoever asks names that module as well; ``of_mesh`` and ``of_solve`` do.
 """
 
 import ast
@@ -15,7 +15,9 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from solver.models import MODELS
+
+ROOT = Path(__file__).parents[1]
 PACKAGES = ("geometry", "solver", "workflow")
 DECLARATION = "DATA"  # name of the constant
 
@@ -35,6 +37,23 @@ def sources(*modules: str) -> list[str]:
         found.add(_file(module).relative_to(ROOT).as_posix())
         found.update(_data(module))
     return sorted(found)
+
+
+def of_mesh(kind: str) -> list[str]:
+    """Files that make a kind of mesh, or the whole muscle."""
+    return sources("geometry.__main__", f"geometry.{kind}")
+
+
+def of_solve(model: str) -> list[str]:
+    """Files that decide the result of a case by a model, those that make its mesh among them."""
+    own = MODELS[model]
+    files = set(sources("solver.__main__", f"solver.models.{model}.model"))
+    if own.mesh is not None:
+        files.update(of_mesh(own.mesh))
+    if own.solve is None:
+        programs = (p for folder in own.includes for p in folder.glob("*.[ei]dp"))
+        files.update(path.relative_to(ROOT).as_posix() for path in programs)
+    return sorted(files)
 
 
 def closure(modules: Iterable[str]) -> set[str]:

@@ -3,10 +3,10 @@
 F = p pi D0^2 / (4 sin^2 a) (3 cos^2 a (1 - eps)^2 - 1), a the braid angle at the mean layer
 diameter. The net alone decides the radius, so contraction ends at 54.7 deg. D0 is
 
-geometric         the inner diameter, as in the paper
-geometric_layers  the mean layer diameter. As the volume of the wall stays the same, the volume
-                  inside the net changes as that of the bore does: this is -p dV/dl of a wall that
-                  keeps its volume, at any thickness.
+- the inner diameter, as in the paper, or
+- the mean layer diameter. As the volume of the wall stays the same, the volume inside the net
+  changes as that of the bore does: this is -p dV/dl of a wall that keeps its volume, at any
+  thickness.
 """
 
 import math
@@ -67,16 +67,9 @@ def bore(
         return np.asarray(np.sqrt(net**2 - (d0**2 - muscle.inner_diameter**2) / shortening))
 
 
-def net_diameter(case: Case) -> float | None:
-    """D0 of the model of a case [mm]; None for the inner diameter."""
-    assert case.muscle.braid is not None
-    return case.muscle.braid.mean_diameter if case.model == "geometric_layers" else None
-
-
-def solve(case: Case) -> Solution:
-    """Eq. (1) at every stop of a path."""
-    contraction, pressure = _sweep[case.path.kind](case)
-    d0 = net_diameter(case)
+def solve(case: Case, d0: float | None = None) -> Solution:
+    """Eq. (1) at every stop of a path; ``d0`` is D0 [mm], the inner diameter if left out."""
+    contraction, pressure = _sweep[case.path.kind](case, d0)
     states = unreached(case.path.states)
     states["contraction"], states["pressure"] = contraction, pressure
     states["force"] = force(case.muscle, pressure, contraction, d0)
@@ -95,7 +88,7 @@ def solve(case: Case) -> Solution:
     return Solution(status=outcome, reason=reason, states=states, state_status=status)
 
 
-def _isobaric(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _isobaric(case: Case, _d0: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     contraction = np.array(case.path.stops, dtype=float)
     if case.path.zero_force:
         assert case.muscle.braid is not None
@@ -104,20 +97,19 @@ def _isobaric(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return contraction, np.full_like(contraction, case.path.held)
 
 
-def _isometric(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _isometric(case: Case, _d0: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     pressure = np.array(case.path.stops, dtype=float)
     if case.path.zero_force:
         pressure = np.append(pressure, 0.0)  # Eq. (1) has no threshold
     return np.full_like(pressure, case.path.held), pressure
 
 
-def _isotonic(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _isotonic(case: Case, d0: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     pressure = np.array(case.path.stops, dtype=float)
-    d0 = net_diameter(case)
     return contraction_under_load(case.muscle, pressure, case.path.held, d0), pressure
 
 
-_Sweep = Callable[[Case], tuple[NDArray[np.float64], NDArray[np.float64]]]
+_Sweep = Callable[[Case, float | None], tuple[NDArray[np.float64], NDArray[np.float64]]]
 _sweep: dict[PathKind, _Sweep] = {
     PathKind.ISOBARIC: _isobaric,
     PathKind.ISOMETRIC: _isometric,

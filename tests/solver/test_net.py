@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from geometry.muscle import Braid, Muscle
+from solver import net
 from solver.load_path import LoadPath
 from solver.material import Thread
-from solver.models.geometric import equation
 from solver.status import CaseStatus, StateStatus
 
 # tan a = pi 21.2 / 144 = 0.4625123, so a = 24.821 deg, cos^2 a = 0.8237792, sin^2 a = 0.1762208
@@ -34,11 +34,11 @@ def test_the_angle_of_the_paper(muscle):
     ],
 )
 def test_force(muscle, pressure, contraction, force):
-    assert equation.force(muscle, pressure, contraction) == pytest.approx(force, abs=1e-4)
+    assert net.force(muscle, pressure, contraction) == pytest.approx(force, abs=1e-4)
 
 
 def test_at_the_mean_layer_diameter(muscle):
-    ratio = equation.force(muscle, 0.3, 0.1, diameter=21.2) / equation.force(muscle, 0.3, 0.1)
+    ratio = net.force(muscle, 0.3, 0.1, diameter=21.2) / net.force(muscle, 0.3, 0.1)
     assert ratio == pytest.approx((21.2 / 20) ** 2)
 
 
@@ -47,7 +47,7 @@ def test_four_times_the_force_at_twice_the_diameter(muscle):
     braid = Braid(lead=144 * 41.2 / 21.2, threads=60, layer_diameters=(40.6, 41.8))
     wide = Muscle(inner_diameter=40, wall_thickness=2, length=300, braid=braid)
     contraction = np.linspace(0, 0.25, 26)
-    ratio = equation.force(wide, 0.3, contraction) / equation.force(muscle, 0.3, contraction)
+    ratio = net.force(wide, 0.3, contraction) / net.force(muscle, 0.3, contraction)
     np.testing.assert_allclose(ratio, 4)
 
 

@@ -1,0 +1,1 @@
+"""Eq. (1) at the layers of threads."""
