@@ -20,7 +20,8 @@ from solver.numerics import KINDS
 from workflow.study.errors import choices, shown
 from workflow.study.values import POSSIBLE, expand, is_possible
 
-DATA = ("solver/models/*/model.py",)  # all models are asked what they are
+# All models are asked what they are.
+DATA = ("solver/models/*/__init__.py", "solver/models/*/model.py")
 LONGEST_NAME = 64
 NAME = re.compile(rf"[A-Za-z0-9_][A-Za-z0-9_.-]{{0,{LONGEST_NAME - 1}}}")
 NAME_RULE = f"letters, digits, _ . and -, at most {LONGEST_NAME}, not beginning with . or -"
