@@ -26,6 +26,14 @@ PARTS = {  # column: what it is, in the order in which it is spent
     "residual [s]": "residuals",
     "rest [s]": "the rest",
 }
+COLUMNS = [
+    "solve [s]",
+    *PARTS,
+    "iterations [1]",
+    "factorisations [1]",
+    "unknowns [1]",
+    "memory [MB]",
+]
 SOLVE, MEMORY, UNKNOWNS = "solve [s]", "memory [MB]", "unknowns [1]"
 
 
@@ -41,7 +49,7 @@ def of_cases(cases: Iterable[str]) -> pd.DataFrame:
     found = {
         case: of_run(json.loads(path.read_text())) for case, path in single.items() if path.exists()
     }
-    return pd.DataFrame.from_dict(found, orient="index")
+    return pd.DataFrame.from_dict(found, orient="index", columns=None if found else COLUMNS)
 
 
 def of_run(cost: dict[str, Any]) -> dict[str, float]:
@@ -98,4 +106,5 @@ def growth(known: pd.DataFrame) -> pd.DataFrame:
                         "to": x.max(),
                     }
                 )
-    return pd.DataFrame(found)
+    columns = ["model", "quantity", "against", "exponent [1]", "from", "to"]
+    return pd.DataFrame(found, columns=columns)

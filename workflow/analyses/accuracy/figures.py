@@ -9,6 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
+from workflow.analyses import undrawn
 from workflow.analyses.accuracy.costs import MEMORY, PARTS, SOLVE, growth, joined, of_cases
 from workflow.analyses.accuracy.settings import MUSCLE, STEPS
 from workflow.analyses.analysis import Solved
@@ -113,7 +114,9 @@ def _error_against(ax: Any, rows: pd.DataFrame, cost: str) -> None:
         ax.plot(own[cost], own[ERROR], markersize=5, linewidth=1.2, **look)
         default = own[own["mesh"] == DEFAULT]
         ax.plot(default[cost], default[ERROR], **_ring(), label="_default")
-    ax.set(xscale="log", yscale="log", ylim=(4e-6, 1.2))
+    positive = known[ERROR][known[ERROR] > 0]
+    limits = min(4e-6, positive.min() / 2), max(1.2, 2 * positive.max())
+    ax.set(xscale="log", yscale="log", ylim=limits if len(positive) else (4e-6, 1.2))
     ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.tick_params(axis="x", which="minor", bottom=False)
@@ -139,7 +142,7 @@ def _label_seconds(ax: Any, rows: pd.DataFrame) -> None:
     """Names beside the lines, and the paper."""
     for model, own in rows[rows[SOLVE].notna() & rows[ERROR].notna()].groupby("model"):
         default = own[own["mesh"] == DEFAULT] if len(own) > 1 else own
-        one = default.iloc[0]
+        one = (default if len(default) else own).iloc[0]
         text, where, side = TEXT[str(model)]
         ax.annotate(
             text.format(100 * one["modelling_error [1]"]),
@@ -215,7 +218,7 @@ def _small_print(known: pd.DataFrame) -> str:
     """What the axes cannot say."""
     laws = growth(known)
     text = (
-        f"{MUSCLE}, 0.3 MPa, 0 to 20 %. "
+        f"{_missing(known[known['set'] == 'mesh'])}{MUSCLE}, 0.3 MPa, 0 to 20 %. "
         "The error is the largest difference from what the fullest model "
         "(solid) converges to, discretisation and modelling together. "
     )
@@ -239,8 +242,19 @@ def _small_print(known: pd.DataFrame) -> str:
 def _relative(known: pd.DataFrame) -> str:
     """Mean relative deviation of the default solid from the manufacturer's map."""
     ours = known[(known["set"] == "mesh") & (known["model"] == "solid")]
-    value = ours.loc[ours["mesh"] == DEFAULT, RELATIVE].iloc[0]
+    value = ours.loc[ours["mesh"] == DEFAULT, RELATIVE].mean()
+    if not np.isfinite(value):
+        return "not known"
     return f"{100 * value:.1f} %".replace("-", "−")
+
+
+def _missing(rows: pd.DataFrame) -> str:
+    """Meshes of which error, seconds or memory is not known; Eq. (1) and the cylinder need none."""
+    lost = rows.assign(error=rows[ERROR].where(rows[ERROR] > 0))
+    said = undrawn.without_value(lost, "error", ["model", "mesh"])
+    unknown = undrawn.without_value(rows, SOLVE, ["model", "mesh"])
+    text = [undrawn.sentence(said, "No error of"), undrawn.sentence(unknown, "No seconds of")]
+    return "".join(f"{sentence} " for sentence in text if sentence)
 
 
 def orders(table: pd.DataFrame) -> Figure:
@@ -249,14 +263,29 @@ def orders(table: pd.DataFrame) -> Figure:
     _by_refinement(axes[0, 0], table)
     _by_tolerance(axes[0, 1], table)
     steps = table[table["set"] == "steps"]
+    lost = _without_error(table)
     if len(steps):
         _note(
             figure,
-            f"Steps along the path, of {100 * min(STEPS):g} to {100 * max(STEPS):g} % of "
+            f"{lost}Steps along the path, of {100 * min(STEPS):g} to {100 * max(STEPS):g} % of "
             "contraction, decide what a curve costs and not what it is: its forces differ by at "
             f"most {100 * steps['force_error [1]'].max():.0e} %. All elements are quadratic.",
         )
     return figure
+
+
+def _without_error(table: pd.DataFrame) -> str:
+    """Meshes and tolerances of which no error is known; the strictest one has none."""
+    families = [
+        table["set"].eq(chosen) & table["model"].eq(model) for chosen, model, *_ in FAMILIES
+    ]
+    meshes = table[np.any(families, axis=0) & (table["refinement"] > 0)]
+    strict = table["tolerance"] > table["tolerance"].min()
+    tolerances = table[(table["set"] == "tolerance") & strict].assign(of="tolerance")
+    said = undrawn.without_value(meshes, "force_error [1]", ["set", "model", "mesh"])
+    said += undrawn.without_value(tolerances, "force_error [1]", ["model", "of", "tolerance"])
+    text = undrawn.sentence(said, "No error of")
+    return f"{text} " if text else ""
 
 
 def _by_refinement(ax: Any, table: pd.DataFrame) -> None:
@@ -268,9 +297,13 @@ def _by_refinement(ax: Any, table: pd.DataFrame) -> None:
         order = rows["force_order [1]"].iloc[0]
         look = {"color": colour, "marker": marker, "linewidth": 1.2}
         ax.plot(rows["refinement"], 100 * rows["force_error [1]"], **look)
-        last = rows.iloc[-1]
+        known = rows[rows["force_error [1]"] > 0]
+        if known.empty:
+            continue
+        last = known.iloc[-1]
+        seen = f"order {order:.1f}" if np.isfinite(order) else "no order"
         ax.annotate(
-            f"{name}:\norder {order:.1f}{THEORY.get(name, '')}",
+            f"{name}:\n{seen}{THEORY.get(name, '')}",
             (last["refinement"], 100 * last["force_error [1]"]),
             (7, {"butt": 10, "mesh": -3}.get(chosen, 0)),
             textcoords="offset points",
@@ -301,12 +334,17 @@ def _by_tolerance(ax: Any, table: pd.DataFrame) -> None:
         beside.plot(rows["tolerance"], rows["iterations [1]"], **look, label="_iterations")
     ax.axvline(1e-9, color=SOFT, linewidth=0.8, linestyle=(0, (4, 2)))
     ax.text(1e-9, 2e-10, " default", fontsize=7, color=SOFT, va="bottom")
-    ax.set(xscale="log", yscale="log", xlabel="tolerance", ylim=(1e-10, 10))
+    ax.set(xscale="log", yscale="log", xlabel="tolerance")
+    errors = 100 * table.loc[table["set"] == "tolerance", "force_error [1]"]
+    errors = errors[errors > 0]
+    within = (1e-10, 10.0) if errors.empty else (errors.min() / 2, 2 * errors.max())
+    ax.set_ylim(min(1e-10, within[0]), max(10.0, within[1]))
     ax.set_ylabel("error of the force [% of the largest]")
     ax.set_title("tolerance of Newton's method")
     ax.legend(loc="upper left", fontsize=7, handlelength=1.8)
     beside.set_ylabel("iterations of the curve (dotted)")
-    beside.set_ylim(0, 250)
+    most = table.loc[table["set"] == "tolerance", "iterations [1]"].max()
+    beside.set_ylim(0, max(250, 1.1 * most))
     beside.set_yticks([0, 50, 100])
     beside.grid(visible=False)
     beside.spines["right"].set_visible(True)

@@ -6,7 +6,9 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+from workflow.analyses import undrawn
 from workflow.analyses.analysis import Solved
+from workflow.figures import curves
 from workflow.figures.style import FULL, SERIES, labelled, legend, panels, percent
 
 REFERENCE = {"color": "0.3", "marker": "s", "linestyle": "none", "label": "reference"}
@@ -47,9 +49,25 @@ def overview(states: pd.DataFrame) -> Figure:
             fitted = "fitted" if here["role"].iloc[0] == "fit" else "not fitted"
             ax.set_title(f"{pressure:g} MPa, {fitted}")
             percent(ax.xaxis, 0.05)
+        for ax in row[table["pressure"].nunique() :]:
+            ax.set_axis_off()
         row[0].set_ylabel("force [N]")
         row[0].annotate(name, (0.98, 0.96), xycoords="axes fraction", **CORNER)
     for ax in axes[-1]:
         ax.set_xlabel("contraction [%]")
     legend(figure, labelled(axes))
+    text = undrawn.sentence(_missing(states))
+    if text:
+        curves.note(figure, text)
     return figure
+
+
+def _missing(states: pd.DataFrame) -> list[str]:
+    """Forces that no model, or no measurement, has."""
+    by = ["calibration", "values", "model", "unit", "pressure", "mpa"]
+    found = undrawn.without_value(states.assign(unit="at", mpa="MPa"), "force", by)
+    first = states.drop_duplicates(["calibration", "pressure", "contraction"])
+    named = first.assign(what="reference at", mpa="MPa")
+    return found + undrawn.without_value(
+        named, "reference", ["calibration", "what", "pressure", "mpa"]
+    )

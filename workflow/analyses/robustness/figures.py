@@ -8,9 +8,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
+from workflow.analyses import undrawn
 from workflow.analyses.analysis import Solved
 from workflow.data import stress
-from workflow.figures import style
+from workflow.figures import curves, style
 
 STATUS: dict[str, dict[str, Any]] = {
     "converged": {"color": "#0072b2", "marker": "o"},
@@ -24,6 +25,7 @@ STATUS: dict[str, dict[str, Any]] = {
 MESH_MARKS = {1: "o", 2: "s", 3: "D"}
 GOOD_DET, GOOD_MESH = 0.5, 1e-3  # what the named cases are held to
 WORST = 6
+ENDS = "\n(at the ends: and beyond)"
 OTHER = {"color": "black", "marker": "d"}  # a status without a look
 
 
@@ -48,7 +50,25 @@ def overview(table: pd.DataFrame) -> Figure:
     _cube(figure.add_subplot(right[0, 0]), cube)
     _cube_det(figure.add_subplot(right[1, 0]), cube)
     _cube_effort(figure.add_subplot(right[2, 0]), cube)
+    text = _missing(named, cube)
+    if text:
+        curves.note(figure, text)
     return figure
+
+
+def _missing(named: pd.DataFrame, cube: pd.DataFrame) -> str:
+    """What has no mark."""
+    lost = undrawn.without_value(named.assign(of="mesh"), "smallest det F", ["name", "of", "mesh"])
+    apart = named[named["against"] != ""].assign(of="mesh")
+    apart = apart[apart["difference"].isna()]
+    alone = undrawn.without_value(apart, "difference", ["name", "of", "mesh"])
+    muscles = int(cube["smallest det F"].isna().sum())
+    lost += [f"{muscles} muscles of the hypercube"] if muscles else []
+    said = (
+        undrawn.sentence(lost, "Without any state"),
+        undrawn.sentence(alone, "With no state in common with mesh 3"),
+    )
+    return " ".join(filter(None, said))
 
 
 def _named_det(ax: Any, named: pd.DataFrame) -> None:
@@ -65,7 +85,9 @@ def _named_det(ax: Any, named: pd.DataFrame) -> None:
             label=f"mesh {mesh:g}",
         )
     ax.axvline(GOOD_DET, color=style.SOFT, linewidth=0.8, linestyle=(0, (4, 2)))
-    ax.set(yticks=range(len(names)), yticklabels=names, xlim=(0, 1.02), xlabel="smallest det F")
+    ax.set(yticks=range(len(names)), yticklabels=names, xlabel="smallest det F")
+    lowest = min(0.0, 1.05 * named["smallest det F"].min())
+    ax.set_xlim(lowest, 1.02)
     ax.invert_yaxis()
     ax.set_title("named cases, −5 to 25 %")
     ax.legend(loc="center left", fontsize=7, handlelength=1, borderaxespad=0.1)
@@ -109,21 +131,26 @@ def _cube(ax: Any, cube: pd.DataFrame) -> None:
 
 
 def _cube_det(ax: Any, cube: pd.DataFrame) -> None:
+    edges = np.linspace(-0.5, 1, 31)
+    found = [cube[name].dropna() for name in ("smallest det F", "smallest det F at nodes")]
+    beyond = any(((values < edges[0]) | (values > edges[-1])).any() for values in found)
     ax.hist(
-        [cube["smallest det F"].dropna(), cube["smallest det F at nodes"].dropna()],
-        bins=np.linspace(-0.5, 1, 31),
+        [values.clip(edges[0], edges[-1]) for values in found],
+        bins=edges,
         color=["#0072b2", "0.7"],
         label=["at quadrature points", "at nodes"],
     )
     ax.axvline(0, color="black", linewidth=0.8)
-    ax.set(xlabel="smallest det F of a path", ylabel="muscles")
+    ax.set(xlabel="smallest det F of a path" + ENDS * beyond, ylabel="muscles")
     ax.legend(loc="upper left", fontsize=7, handlelength=1, borderaxespad=0.1)
 
 
 def _cube_effort(ax: Any, cube: pd.DataFrame) -> None:
-    ax.hist(cube["iterations per state"], bins=np.arange(0, 42, 1.5), color="#0072b2")
+    edges, found = np.arange(0, 42, 1.5), cube["iterations per state"]
+    beyond = bool((found > edges[-1]).any())
+    ax.hist(found.clip(upper=edges[-1]), bins=edges, color="#0072b2")
     cut = int((cube["cutbacks"] > 0).sum())
-    ax.set(xlabel="Newton iterations per state", ylabel="muscles")
+    ax.set(xlabel="Newton iterations per state" + ENDS * beyond, ylabel="muscles")
     ax.set_title(f"{cut} of {len(cube)} needed a cutback", fontweight="normal")
 
 
@@ -134,6 +161,8 @@ def worst(solved: Sequence[Solved], table: pd.DataFrame) -> Figure:
     figure, axes = style.panels(style.FULL, 6.6, 3, 2, gap=(0.45, 0.75))
     for ax, (_, row) in zip(axes.flat, rows.iterrows(), strict=False):
         _wall(ax, by_record[row["record"]], row)
+    for ax in axes.flat[len(rows) :]:
+        ax.set_axis_off()
     figure.text(
         0.01,
         0.005,

@@ -3,10 +3,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from workflow.analyses import undrawn
 from workflow.analyses.analysis import Solved
+from workflow.figures import curves
 from workflow.figures.style import FULL, SERIES, SOFT, grid, labelled, legend, percent
 
 OUTPUTS = {
@@ -66,7 +69,25 @@ def overview(table: pd.DataFrame) -> Figure:
     for ax, analysis in zip(axes[1:, 1], analyses[1:], strict=True):
         ax.set_xlabel(f"share of the variance [%], {analysis}")
     legend(figure, labelled(axes))
+    text = undrawn.sentence(_missing(table))
+    if text:
+        curves.note(figure, text)
     return figure
+
+
+def _missing(table: pd.DataFrame) -> list[str]:
+    """Bars and marks without a value."""
+    named = table.assign(
+        input=table["input"].map(INPUTS), output=table["output"].map(OUTPUTS), of="on"
+    )
+    local = named[named["analysis"] == "local"]
+    found = undrawn.without_value(local, "percent per percent", ["model", "input", "of", "output"])
+    shares = named[named["analysis"] != "local"]
+    for column in ("first", "total"):
+        if column in shares:
+            by = ["analysis", "input", "of", "output"]
+            found += undrawn.without_value(shares, column, by)
+    return found
 
 
 def _elasticities(ax: Any, rows: pd.DataFrame, names: list[str]) -> None:
@@ -85,5 +106,6 @@ def _shares(ax: Any, rows: pd.DataFrame, names: list[str]) -> None:
     error |= {"xerr": rows["total_95"], "label": "variance, with others"}
     ax.barh(places, rows["total"], 0.7, color="0.82", **error)
     ax.barh(places, rows["first"], 0.35, color=SERIES[1]["color"], label="variance, alone")
-    ax.set_xlim(0, 1)
+    ends = np.nan_to_num(rows[["first", "total"]].to_numpy(dtype=float))
+    ax.set_xlim(min(0.0, 1.05 * ends.min()), max(1.0, 1.05 * ends.max()))
     percent(ax.xaxis, 0.5)

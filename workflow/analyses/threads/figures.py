@@ -12,9 +12,10 @@ from scipy.interpolate import LinearNDInterpolator
 
 from geometry.cell import Box
 from solver.effects import Layers
+from workflow.analyses import undrawn
 from workflow.analyses.analysis import Solved
 from workflow.analyses.threads.local import nodes
-from workflow.figures import style
+from workflow.figures import curves, style
 
 Array = NDArray[np.float64]
 HEIGHT = 0.25  # of the cut, in axial spacings: the threads of both layers lie apart there
@@ -60,9 +61,15 @@ def local(shown: dict[str, Solved], rows: pd.DataFrame) -> Figure:
         lower.append(figure.add_subplot(places[1, k]))
         _tension(lower[-1], rows[rows["rubber"] == rubber])
     style.grow(figure, bottom=style.LEGEND_ROW)
-    figure.legend(
-        handles=style.labelled(np.array(lower)), ncols=4, loc="lower center", fontsize=7.5
-    )
+    handles = style.labelled(np.array(lower))
+    text = undrawn.sentence(sorted(set(rows["rubber"].dropna()) - set(shown)), "No picture of")
+    where: dict[str, Any] = {}
+    if text:
+        below = figure.get_size_inches()[1]
+        curves.note(figure, text)
+        taller = figure.get_size_inches()[1]
+        where = {"bbox_to_anchor": (0.5, (taller - below) / taller)}
+    figure.legend(handles=handles, ncols=4, loc="lower center", fontsize=7.5, **where)
     return figure
 
 
@@ -137,7 +144,10 @@ def _tension(ax: Any, rows: pd.DataFrame) -> None:
             f"{'inner' if layer == 1 else 'outer'} layer",
         )
     middle = chosen["thread tension [N]"].mean()
-    ax.set_ylim(0.92 * middle, 1.08 * middle)
+    if np.isfinite(middle):
+        low, high = chosen["thread tension [N]"].min(), chosen["thread tension [N]"].max()
+        margin = 0.08 * abs(middle)
+        ax.set_ylim(min(middle - margin, low), max(middle + margin, high))
     ax.set(xlabel="along the cell [axial spacing]", ylabel="thread tension [N]", xlim=(0, 1))
 
 
@@ -151,7 +161,23 @@ def correction(rows: pd.DataFrame) -> Figure:
     axes[1, 1].axhline(0, color="black", linewidth=0.7)
     axes[1, 1].set_ylabel("smallest det F [1]")
     axes[1, 0].legend(fontsize=7.5)
+    text = undrawn.sentence(_missing(rows))
+    if text:
+        curves.note(figure, text)
     return figure
+
+
+def _missing(rows: pd.DataFrame) -> list[str]:
+    """States without a force, curve by curve, and changes that have nothing to be compared with."""
+    found = rows[rows["set"].isin(["correction", "mesh"])]
+    named = found.assign(unit="MPa", of="wall", length="mm")
+    by = ["set", "rubber", "layers", "pressure [MPa]", "unit", "of", "wall [mm]", "length"]
+    lost = undrawn.without_value(named, "force [N]", by)
+    drawn = _of_correction(named)
+    drawn = drawn[(drawn["layers"] == "discrete") & (drawn["wall [mm]"] == WALL)]
+    alone = drawn[drawn["force [N]"].notna() & drawn["change [N]"].isna()]
+    by = ["rubber", "layers", "pressure [MPa]", "unit"]
+    return lost + [f"change of {name}" for name in undrawn.without_value(alone, "change [N]", by)]
 
 
 def _of_correction(rows: pd.DataFrame) -> pd.DataFrame:
@@ -212,4 +238,4 @@ def _meshes(ax: Any, rows: pd.DataFrame, quantity: str) -> None:
     ax.set_xticks(sizes, [f"{size:g}" for size in sizes])
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.tick_params(axis="x", which="minor", bottom=False)
-    ax.set_title("NBR, 0.3 MPa, 0 %: finer meshes to the left")
+    ax.set_title("NBR, 0.3 MPa, 0 %: finer to the left")
