@@ -141,9 +141,9 @@ def test_an_edited_part_runs_the_analysis_again_and_no_other(extended):
     project, _ = extended
     kept = project.read("workflow/analyses/dummy/table.py")
     project.write("workflow/analyses/dummy/table.py", kept + "# edited\n")
-    status, output = project.run("--dry-run", "--quiet", "host", *TARGETS)
+    status, output = project.run(*TARGETS, "--dry-run", "--quiet", "host")
     project.write("workflow/analyses/dummy/table.py", kept)
-    assert status == 0
+    assert status == 0, output
     assert "Evaluating the analysis dummy" in output
     assert "Gathering" not in output
     assert "Solving" not in output

@@ -14,7 +14,7 @@ Layout, version 2
     and _note: of the state of zero force, for curves that ask for it.
     Along muscle: what the muscle is made of. Coordinates are the decimals of the study file.
 /effects     dims regime, path, effect: what leaving out an effect changes and costs, as measured by
-             the study of effects (workflow/plan/effect_costs.py); only in results/dataset.nc
+             the analysis of effects (workflow/plan/effect_costs.py); only in results/dataset.nc
 /reference   dim point: the force maps that are of muscles of the study
 /robustness, /threads   dim row: the tables of these studies, where they were asked for
 

@@ -16,7 +16,7 @@ EVERYTHING = "all but pressure on the net"
 
 
 def error_factor(study: Study, scene: Scene, measured: MeasuredEffects, regime: str) -> float:
-    """By how much more an error weighs in a scene than in the study of effects; 1 under a load.
+    """By how much more an error weighs in a scene than in the analysis of effects; 1 under a load.
 
     Errors in newtons are taken to go with the size of Eq. (1) and, at constant pressure, with the
     pressure; the largest force is Eq. (1) less what rubber and threads have taken from it in the

@@ -2,7 +2,7 @@
 
 Pure: no files but the measured effects and errors (effect_costs.csv, mesh_error.csv) are read, and
 nothing is solved. The models form a ladder; going down it leaves out one effect after the other,
-and the error of a step is what leaving that effect out has changed in the study of effects, in the
+and the error of a step is what leaving that effect out has changed in the analysis of effects, in the
 regimes that the scene touches. A scene that names its ``models`` gets those; its ``effects`` hold
 for it all the same.
 
@@ -69,8 +69,8 @@ class Estimate:
 
     rung: Rung
     error: float  # expected, share of the largest value; NaN if never measured
-    mesh_error: float  # what of it is the mesh's, as the study of accuracy has found; NaN if not
-    seconds: float  # of one curve of the study of effects
+    mesh_error: float  # what of it is the mesh's, as the analysis of accuracy has found; NaN if not
+    seconds: float  # of one curve of the analysis of effects
     missing: bool  # whether it loses states somewhere in these regimes
     refused: str = ""  # why it cannot serve, whatever the error
 
@@ -147,7 +147,7 @@ def readable(model: str, effects: Effects) -> Effects:
 
 
 def regimes(study: Study, scene: Scene) -> Iterator[str]:
-    """The regimes of the study of effects that a scene touches."""
+    """The regimes of the analysis of effects that a scene touches."""
     found = [study.muscles[name] for name in scene.muscles]
     soft = [m.rubber.shear_modulus < 0.2 for m in found]
     stiff = [m.thread is not None and m.thread.stiffness > 2000 for m in found]

@@ -90,4 +90,4 @@ def test_what_was_weighed_comes_back_to_the_planner(asked, tmp_path, monkeypatch
     weigh.measure("", costs=tmp_path, file=tmp_path / "found.csv")
     known = effect_costs.load(tmp_path / "found.csv")["normal", "isobaric", "cap_geometry"]
     assert (known.force, known.seconds_with) == (pytest.approx(0.02), 1.5)
-    assert "study of effects of 20" in effect_costs.origin(tmp_path / "found.csv")
+    assert "analysis of effects of 20" in effect_costs.origin(tmp_path / "found.csv")

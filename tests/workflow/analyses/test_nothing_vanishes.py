@@ -272,7 +272,7 @@ def test_nothing_is_beside_the_picture(drawn):
     for stem, figure in figures.items():
         renderer = FigureCanvasAgg(figure).get_renderer()
         width, height = figure.get_size_inches() * figure.dpi
-        texts = [*figure.texts, *(ax.xaxis.label for ax in figure.axes)]
+        texts = [*figure.texts, *(ax.xaxis.label for ax in figure.axes if ax.axison)]
         texts += [ax._left_title for ax in figure.axes]
         for text in filter(lambda one: one.get_text(), texts):
             box = text.get_window_extent(renderer)

@@ -43,7 +43,7 @@ def test_effects_stand_in_the_whole_dataset():
     group = dataset.build([], {}, effects=True)["effects"]
     assert group.sizes == {"regime": 5, "path": 3, "effect": 13}
     assert float(group.force.sel(regime="normal", path="isobaric", effect="end_caps")) > 0.01
-    assert group.attrs["origin"].startswith("study of effects of ")
+    assert group.attrs["origin"].startswith("analysis of effects of ")
 
 
 def test_groups_and_dimensions(tree):

@@ -150,7 +150,7 @@ def test_explain_says_it_for_every_scene():
     for name in WITH_PATH:
         assert f"\n{name}: " in text
     assert text.count("  wants ") == text.count("  models ") == len(WITH_PATH)
-    assert "effects: study of effects of" in text
+    assert "effects: analysis of effects of" in text
 
 
 # --- what was measured ----------------------------------------------------------------------------

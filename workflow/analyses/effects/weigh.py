@@ -19,7 +19,7 @@ COSTS = Path("results/cost")
 
 
 def measure(study: str, costs: Path = COSTS, file: Path = FILE) -> None:
-    """Write what is measured by a solved study of effects, with the seconds that its cases took."""
+    """Write what is measured by a solved analysis of effects, with the seconds of its cases."""
     solved = []
     seconds: dict[tuple[str, str, str], float] = {}
     for asked in analysis.cases("effects", study):
@@ -36,7 +36,7 @@ def measure(study: str, costs: Path = COSTS, file: Path = FILE) -> None:
             row[f"seconds_{side}"] = float(f"{spent:.2g}")
     names = [f.name for f in fields(MeasuredEffect)]
     with atomic_write(file) as beside, beside.open("w", newline="") as stream:
-        stream.write(f"# study of effects of {date.today()}, code {code_digest(*MODELS)}\n")
+        stream.write(f"# analysis of effects of {date.today()}, code {code_digest(*MODELS)}\n")
         writer = csv.DictWriter(stream, names, extrasaction="ignore", lineterminator="\n")
         writer.writeheader()
         writer.writerows(
