@@ -1,7 +1,8 @@
 """How far the mesh of a curve is from one that is infinitely fine: measured once, looked up since.
 
 ``mesh_error.csv`` beside this module holds, for every mesh of the scenes, the largest errors
-that the analysis of accuracy has found on any of their curves, as shares of the curve's largest value:
+that the analysis of accuracy has found on any of their curves, as shares of the largest value of
+the curve:
 
     snakemake --cores 2 accuracy && python -m workflow bounds
 

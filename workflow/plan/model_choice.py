@@ -2,9 +2,9 @@
 
 Pure: no files but the measured effects and errors (effect_costs.csv, mesh_error.csv) are read, and
 nothing is solved. The models form a ladder; going down it leaves out one effect after the other,
-and the error of a step is what leaving that effect out has changed in the analysis of effects, in the
-regimes that the scene touches. A scene that names its ``models`` gets those; its ``effects`` hold
-for it all the same.
+and the error of a step is what leaving that effect out has changed in the analysis of effects, in
+the regimes that the scene touches. A scene that names its ``models`` gets those; its ``effects``
+hold for it all the same.
 
 The mesh alone may take a quarter of the tolerance (mesh_error.csv), so the mesh is the coarsest
 that does; the default meshes are those for the default tolerance.
