@@ -71,7 +71,12 @@ def refused(study: Study) -> Iterator[StudyError]:
 def _refused(study: Study, name: str) -> Iterator[StudyError]:
     source, entry, keys = study.source, study.calibration[name], ("calibration", name)
     place, named = (*keys, "reference"), entry.reference
-    assert named is not None  # else the calibration is refused by the study itself
+    if entry.muscle not in study.muscles or named is None:
+        return  # which the study itself refuses
+    if set("{}").intersection(named):
+        allowed = "a path without { and }, in which Snakemake sees a pattern"
+        yield source.refuse(place, named, allowed)
+        return
     try:
         found = read(named, study.muscles[entry.muscle].muscle.length)
     except StudyError as error:

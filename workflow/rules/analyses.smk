@@ -34,7 +34,7 @@ for each in ANALYSES.values():
         log:
             f"results/logs/analyses/{each.name}.log",
         params:
-            study=STUDY,
+            study=lambda _: STUDY,  # as it is, braces and all
             name=each.name,
             asked=lambda wildcards, name=each.name: ANALYSES[name].digest(PLAN.study),
         message:

@@ -568,7 +568,7 @@ REFERENCES = [
     ("reference: .", "reference", "cannot be read"),
     ("reference: ./", "reference", "cannot be read"),
     ('reference: "a\\0b.csv"', "reference", "cannot be read"),
-    ("reference: '{b}.csv'", "reference", "there is no such file"),
+    ("reference: '{b}.csv'", "reference", "a path without { and }"),
     ("reference: FOLDER/empty.csv", "reference", "no force in it"),
     ("reference: FOLDER/words.csv", "reference", "words.csv:2: not all of it are numbers"),
     ("reference: FOLDER/good.csv, fit_pressure: 0.2", "fit_pressure", "no force at 0.2 MPa"),
@@ -600,6 +600,12 @@ def test_calibrations_that_cannot_be_made(tmp_path, entry, key, said):
     found = refusal(tmp_path, CALIBRATION.replace("muscle: one}", f"{entry}}}"))
     assert f"study.yaml:29: calibration.mine.{key}" in found
     assert said in found
+
+
+def test_a_calibration_of_a_muscle_that_is_refused(tmp_path):
+    text = CALIBRATION.replace("muscle: one", "muscle: one, reference: nothing.csv")
+    said = refusal(tmp_path, text.replace("length: 300", "length: -300"))
+    assert said.count("refused") == 1
 
 
 def test_a_file_of_forces_that_fits(tmp_path):
@@ -660,9 +666,18 @@ def test_a_run_ends_with_the_message_alone(tmp_path, option, said):
     assert "Traceback" not in "\n".join(lines)
 
 
-def test_braces_and_blanks_in_the_name_of_a_study(tmp_path):
-    name = "a {muscle} 'q' [x].yaml"
-    (tmp_path / name).write_text(changed("[0.2, 0.3]", "[2, 3]"))
-    status, lines = snakemake(tmp_path, "--config", f"study={name}", "--quiet", "all")
-    assert status == 0, lines
-    assert sum("is unusual; perhaps 2 bar" in line for line in lines) == 1
+def test_braces_and_blanks_in_the_names_of_files(tmp_path):
+    name, forces = "a {muscle} 'q' [x].yaml", "b [c] 'd'.csv"
+    (tmp_path / forces).write_text(GOOD)
+    entry = f'muscle: one, reference: "{forces}"'
+    text = CALIBRATION.replace("[0.2, 0.3]", "[2, 3]").replace("muscle: one", entry)
+    (tmp_path / name).write_text(text)
+    for targets in ([], ["--", "calibrate"]):
+        status, lines = snakemake(tmp_path, "--quiet", "all", "--config", f"study={name}", *targets)
+        assert status == 0, lines
+        assert sum("is unusual; perhaps 2 bar" in line for line in lines) == 1
+
+
+def test_no_rule_takes_the_name_of_the_study_for_a_pattern():
+    rules = {path.name: path.read_text() for path in (ROOT / "workflow/rules").glob("*.smk")}
+    assert [name for name, text in rules.items() if "study=STUDY" in text] == []
