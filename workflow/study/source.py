@@ -50,7 +50,9 @@ class Source:
     def validated(self, findings: Findings) -> StudyFile:
         """The entries that fit the schema; of the others, and of what has no value, the errors."""
         if not isinstance(self.plain, dict):
-            raise self.refuse((), self.plain, "a mapping, key: value")
+            sections = ", ".join(StudyFile.model_fields)
+            text = f"{printable(str(self.path))}: is no study\n  allowed: a mapping with {sections}"
+            raise StudyError(text)
         empty = list(_without_value(self.plain))
         places: list[Keys] = []
         unknown: list[Keys] = []  # keys without which an entry is sound
@@ -173,10 +175,6 @@ class Source:
     def _of_schema(self, error: ErrorDetails) -> StudyError:
         keys = error["loc"]
         line = self.line(keys) or 0
-        if not keys:
-            sections = ", ".join(StudyFile.model_fields)
-            text = f"{printable(str(self.path))}: is no study\n  allowed: a mapping with {sections}"
-            return StudyError(text)
         allowed = error["msg"].removeprefix("Input should be ")
         if keys and keys[-1] == "[key]":
             allowed = allowed if error["type"] == "refused" else NAME_RULE
