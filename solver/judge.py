@@ -7,12 +7,16 @@ from numpy.typing import NDArray
 
 from solver import zero_force
 from solver.case import Case
-from solver.load_path import SWEPT, PathKind
+from solver.load_path import CONTRACTION_LIMITS, SWEPT, PathKind
 from solver.record import Solution
 from solver.status import CaseStatus, StateStatus, case_status, state_status
 
 LIMITS = ("fold", "asymptote", "crumpling", "overhang")  # kinds of limit that a reason begins with
 LOST = "reached through a state that is turned inside out, or across a snap of the muscle"
+TOO_FAR = (
+    f"a contraction of {{:.3g}} % is outside {100 * CONTRACTION_LIMITS[0]:g} to "
+    f"{100 * CONTRACTION_LIMITS[1]:g} %, where a muscle can be held: another branch"
+)
 States = dict[str, NDArray[np.float64]]
 
 
@@ -37,7 +41,8 @@ def judged(
     each = state_status(case.path.kind, states)
     valid = StateStatus.CONVERGED, StateStatus.UNSTABLE
     lost = {k for k in lost if each[k] in valid}
-    for k in lost:
+    far = {k for k in _too_far(case, states) if each[k] in valid}
+    for k in lost | far:
         each[k] = StateStatus.INVALID_STATE
     aside = ""  # what ended the search for zero force when the stops were done
     if ended and case.path.zero_force and np.isfinite(states["force"][:count]).all():
@@ -48,10 +53,11 @@ def judged(
     if status is CaseStatus.INVALID_STATE:
         bad = each[:count].count(StateStatus.INVALID_STATE)
         what = "turned inside out somewhere" + (", or lie behind such a state" if lost else "")
+        what += ", or beyond the contractions that can be asked for" if far else ""
         reason = f"{bad} of {count} states are {what}"
     notes = _notes(case.path.kind, states, each, reason)
-    for k in lost:
-        notes[k] = LOST
+    for k in lost | far:
+        notes[k] = LOST if k in lost else TOO_FAR.format(100 * states["contraction"][k])
     if case.path.zero_force:
         each[-1], note = zero_force.judge(case, states, each[-1], searched)
         notes[-1] = aside or note or notes[-1]
@@ -65,6 +71,18 @@ def judged(
         notes=notes,
         unknowns=unknowns,
     )
+
+
+def _too_far(case: Case, states: States) -> set[int]:
+    """States under a load whose contraction is none that other paths may ask for.
+
+    A tube that is blown up jumps to another branch there, of many times its length.
+    """
+    if case.path.kind is not PathKind.ISOTONIC:
+        return set()
+    low, high = CONTRACTION_LIMITS
+    contraction = states["contraction"]
+    return set(map(int, np.flatnonzero((contraction < low) | (contraction > high))))
 
 
 def _among_invalid(case: Case, states: States, status: Sequence[StateStatus]) -> bool:

@@ -110,3 +110,23 @@ def test_the_threshold_of_a_soft_muscle_is_the_lowest_zero_of_its_force(
     near = threshold(0.03, 0.06)
     assert 0.03 < near < 0.06
     assert threshold(0.1, 0.3, 0.5, 0.7) == pytest.approx(near, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("rubber", "size", "stops"),
+    [
+        (MooneyRivlin(c10=C10, c01=C01), {"inner_diameter": 8, "length": 40}, (0.05, 0.2, 1.0)),
+        (MooneyRivlin(c10=0.028, c01=0.018), {"inner_diameter": 30, "length": 100}, (0.01, 0.2)),
+    ],
+)
+def test_a_tube_many_times_its_length_is_no_answer(make_case, solve_case, rubber, size, stops):
+    """Beyond its largest pressure Newton's method finds another branch, 13 times as long."""
+    tube = Muscle(wall_thickness=1, braid=None, **size)
+    path = LoadPath(kind="isotonic", held=0.0, stops=stops)
+    solution = solve_case(make_case(model="membrane", muscle=tube, rubber=rubber, path=path))
+    assert solution.status is not CaseStatus.CONVERGED
+    assert solution.reason
+    for k, contraction in enumerate(solution.states["contraction"]):
+        good = solution.state_status[k] is StateStatus.CONVERGED
+        assert good == (contraction > -0.5)
+        assert good or solution.notes[k]
