@@ -166,6 +166,7 @@ def to_nowhere(path):
 
 DAMAGE = {  # by kind of file, one of each at a time
     "dataset.nc": (cut, to_folder, Path.unlink, to_pipe),
+    "states.parquet": (Path.unlink, cut, to_nowhere, to_folder),
     "tables/failures.csv": (Path.unlink, cut, to_folder, to_nowhere),
     "cases/*.h5": (cut, Path.unlink, to_nowhere, to_folder),
     "meshes/*.msh": (Path.unlink, cut, to_pipe, to_folder),
@@ -192,7 +193,7 @@ def test_damage_is_noticed_and_made_good_by_the_next_run(project, copy, number):
 def test_a_flipped_bit_anywhere_is_found_by_the_check(project, copy):
     results = copy.folder / "results"
     assert copy.run("check", program=("workflow",))[0] == 0
-    kinds = ("cases/*", "figures/*", "meshes/*", "tables/*", "dataset.nc")
+    kinds = ("cases/*", "figures/*", "meshes/*", "tables/*", "dataset.nc", "states.parquet")
     chosen = [path for kind in kinds for path in results.glob(kind)]
     for path in chosen:
         flip(path)

@@ -38,6 +38,7 @@ def test_everything_is_there_and_nothing_runs_again(project):
     for name in ("fig90", "fig91"):
         assert {p.suffix for p in results.glob(f"figures/{name}.*")} == {".png", ".svg", ".csv"}
     assert (results / "dataset.nc").exists()
+    assert (results / "states.parquet").exists()
     assert len((results / "tables/failures.csv").read_text().splitlines()) == 1
     assert len(list(results.glob("cases/*.h5"))) == 5
     assert project.planned() == set()
@@ -120,7 +121,8 @@ EDITS = {
     "solver/path/newton.idp": MESHED | GATHER | DRAW91,
     "workflow/figures/fig90.py": DRAW90,
     "workflow/figures/style.py": DRAW90 | DRAW91,
-    "workflow/data/dataset.py": AFTER,
+    "workflow/data/dataset.py": GATHER,
+    "workflow/data/states.py": AFTER,
     "config/reference/festo_musclesim_dmsp20.csv": AFTER,
 }
 

@@ -1,18 +1,15 @@
-"""All curves in one labelled tree: ``results/dataset.nc``.
+"""All states of a study in one file: ``results/dataset.nc``.
 
-Layout, version 2
+Layout, version 3
 -----------------
-/isobaric    dims muscle, model, variant, pressure, contraction
-/isometric   dims muscle, model, variant, contraction, pressure
-/isotonic    dims muscle, model, variant, load, pressure
-    the variables of solver.record.VARIABLES that are no dimension, NaN where there is no state;
-    force_error: what its mesh does to the force at most (workflow/plan/mesh_error.py);
-    status: of the state (solver/status.py), empty where nobody asked for one; flags and note beside
-    it (words with spaces between; a sentence), mostly empty;
-    case, case_status, case_reason: of the curve (without the last dimension);
-    threshold_pressure (isometric), free_contraction (isobaric), each with its _status, _flags
-    and _note: of the state of zero force, for curves that ask for it.
-    Along muscle: what the muscle is made of. Coordinates are the decimals of the study file.
+/states      dim row: every state; the columns of OF_STATE (workflow/data/states.py), and curve: the
+             row of its curve in /curves
+/curves      dim curve: the columns of OF_CURVE
+/muscles     dim muscle: the columns of OF_MUSCLE
+/isobaric, /isometric, /isotonic   the same states at their labels (workflow/data/labelled.py); only
+             where at least 5 % of the places are filled or all of them take less than 50 MB: with
+             the square of the number of muscles that have stops of their own they would be more.
+             ``workflow.data.open`` makes these groups of any muscle
 /effects     dims regime, path, effect: what leaving out an effect changes and costs, as measured by
              the analysis of effects (workflow/plan/effect_costs.py); only in results/dataset.nc
 /reference   dim point: the force maps that are of muscles of the study
@@ -23,202 +20,110 @@ Units and long names are attributes. Groups without a curve are absent. The same
 same bytes.
 """
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
+import workflow
 from geometry.files import atomic_write
-from solver.models import MODELS
-from solver.record import VARIABLES, Solution
-from workflow.data import reference
+from workflow.data import labelled, reference
 from workflow.data.records import Curve
 from workflow.data.reference import ForceMap
-from workflow.plan import mesh_error
+from workflow.data.states import CONTROLS, OF_CURVE, OF_MUSCLE, OF_STATE, Table, attributes
 from workflow.plan.effect_costs import group as measured_effects
 from workflow.study.contents import StudiedMuscle
-from workflow.study.schema import HELD_KEY, SWEPT_KEY
 
-LAYOUT = 2
-NAN = math.nan
-CONTROLS = {
-    "contraction": {"units": "1", "long_name": "contraction, 1 - l/L"},
-    "pressure": {"units": "MPa", "long_name": "pressure"},
-    "load": {"units": "N", "long_name": "load"},
-}
-ZERO_FORCE = {
-    "isometric": ("threshold_pressure", "pressure", "pressure of zero force"),
-    "isobaric": ("free_contraction", "contraction", "contraction of zero force"),
-}
-WORDS = ("status", "flags", "note")  # of a state
-FORCE_ERROR = {"units": "N", "long_name": "bound on the discretisation error of the force"}
-Coordinate = tuple[str, str, Callable[[StudiedMuscle], object]]  # unit, long name, value
-MUSCLE: dict[str, Coordinate] = {  # coordinates along muscle
-    "inner_diameter": ("mm", "initial inner diameter", lambda m: m.muscle.inner_diameter),
-    "wall_thickness": ("mm", "initial wall thickness", lambda m: m.muscle.wall_thickness),
-    "length": ("mm", "initial length between the caps", lambda m: m.muscle.length),
-    "braid_angle": ("degree", "braid angle at the mean layer diameter", lambda m: _angle(m)),
-    "lead": ("mm", "lead of the threads", lambda m: _of_braid(m, "lead")),
-    "threads": ("1", "threads per layer", lambda m: _of_braid(m, "threads")),
-    "thread_stiffness": (
-        "N",
-        "EA of a thread",
-        lambda m: m.thread.stiffness if m.thread else NAN,
-    ),
-    "material": ("", "rubber", lambda m: m.material),
-}
+LAYOUT = 3
+FILLED, LARGE = 0.05, 50e6  # share, bytes: what labelled groups must have, or not exceed
+INDEX = ("1", "row of the curve in /curves")
+MUSCLES = {"muscle": OF_CURVE["muscle"], **OF_MUSCLE}
 
 
 def build(
     curves: Sequence[Curve],
     muscles: Mapping[str, StudiedMuscle],
     *,
+    study: str = "",
     effects: bool = False,
     others: Mapping[str, xr.Dataset] | None = None,
 ) -> xr.DataTree:
     """The tree of some curves and of ``others``, further groups by name.
 
-    With ``effects`` also what is known of leaving effects out.
+    With ``effects`` also what is known of leaving effects out; ``study`` is its name.
     """
+    table = Table.of(curves, muscles)
     groups = {**(others or {})}
     if named := {muscle.reference for muscle in muscles.values()} - {()}:
         groups["reference"] = _reference(reference.load(sorted(set().union(*named))))
     if effects:
         groups["effects"] = measured_effects()
-    for name in HELD_KEY:
-        found = [curve for curve in curves if curve.place.group == name]
-        if found:
-            groups[name] = _group(name, found, muscles)
+    if curves:
+        groups |= {
+            "muscles": _rows(table.muscles.rename_axis("muscle").reset_index(), "muscle", MUSCLES),
+            "curves": _rows(table.curves, "curve", OF_CURVE),
+            "states": _rows(table.states, "row", {"curve": INDEX, **OF_STATE}),
+        }
+    for group in labelled.groups(table):
+        if group.filled >= FILLED or group.bytes < LARGE:
+            groups[group.kind] = group.dataset()
     tree = xr.DataTree.from_dict(dict(sorted(groups.items())))
-    tree.attrs.update(filetype="muscle-dataset", layout=LAYOUT)
+    tree.attrs.update(
+        title="States of pneumatic muscles" + (f" of the study {study}" if study else ""),
+        study=study,
+        Conventions="CF-1.11",
+        source=f"pneumatic-muscle {workflow.VERSION}",
+        code=" ".join(sorted(set(table.curves["code"]) - {""})),
+        filetype="muscle-dataset",
+        layout=LAYOUT,
+    )
     return tree
 
 
+def _rows(table: pd.DataFrame, dim: str, columns: Mapping[str, tuple[str, str]]) -> xr.Dataset:
+    """A table as variables along one dimension."""
+    variables = {name: (dim, _array(table[name]), attributes(columns[name])) for name in columns}
+    return xr.Dataset(variables)
+
+
+def _array(values: pd.Series) -> np.ndarray[Any, Any]:
+    numeric = pd.api.types.is_numeric_dtype(values)
+    return np.asarray(values, None if numeric else object)
+
+
+def table_of(tree: xr.DataTree) -> Table:
+    """The table of states that a dataset was made of."""
+    names = ("muscles", "curves", "states")
+    muscles, curves, states = (tree[name].to_dataset().to_dataframe() for name in names)
+    return Table(muscles, curves.reset_index(drop=True), states.reset_index(drop=True))
+
+
 def write(tree: xr.DataTree, path: Path) -> None:
-    """Write a tree as netCDF-4, whole or not at all; HDF5 checks the sums of its numbers."""
-    checked = {
+    """Write a tree as netCDF-4, whole or not at all; HDF5 checks the sums of its numbers.
+
+    All but labels is compressed, texts as characters.
+    """
+    encoding = {
         group.path: {
-            name: {"fletcher32": True}
+            name: _encoding(variable)
             for name, variable in group.dataset.variables.items()
-            if variable.dims and variable.dtype.kind in "fi"
+            if variable.size and (variable.dtype.kind in "fi" or name not in variable.dims)
         }
         for group in tree.subtree
     }
-    content = tree.to_netcdf(None, engine="h5netcdf", encoding=checked)
+    content = tree.to_netcdf(None, engine="h5netcdf", encoding=encoding)
     with atomic_write(path) as beside:
         beside.write_bytes(content)  # HDF5 itself crashes where the disk is full
 
 
-def _group(name: str, curves: Sequence[Curve], muscles: Mapping[str, StudiedMuscle]) -> xr.Dataset:
-    """One group: every curve written to its place."""
-    held, swept = HELD_KEY[name], SWEPT_KEY[name]
-    axes = _axes(held, swept, curves)
-    place_of = {dim: {value: k for k, value in enumerate(axis)} for dim, axis in axes.items()}
-    shape = tuple(map(len, axes.values()))
-    states = {v: np.full(shape, np.nan) for v in VARIABLES if v not in axes}
-    labels = {v: np.full(shape[:-1], "", object) for v in ("case", "case_status", "case_reason")}
-    words = {name: np.full(shape, "", object) for name in WORDS}
-    force_error = np.full(shape, np.nan)
-    for curve in curves:
-        at: tuple[Any, ...] = tuple(
-            place_of[dim][value] for dim, value in _labels(curve, held).items()
-        )
-        along = [place_of[swept][stop] for stop in curve.stops]
-        chosen = [curve.case.path.stops.index(stop) for stop in curve.stops]
-        for variable, values in states.items():
-            values[(*at, along)] = curve.solution.states[variable][chosen]
-        force_error[(*at, along)] = mesh_error.error(curve.case, curve.solution, "force")[chosen]
-        said = [_words(curve.solution, k) for k in chosen]
-        for word, texts in words.items():
-            texts[(*at, along)] = [of_state[word] for of_state in said]
-        labels["case"][at] = curve.key
-        labels["case_status"][at] = curve.solution.status.value
-        labels["case_reason"][at] = curve.solution.reason
-    dims = tuple(axes)
-    data = xr.Dataset(coords=_coordinates(axes, muscles))
-    for variable, values in states.items():
-        unit, long_name = VARIABLES[variable]
-        data[variable] = (dims, values, {"units": unit, "long_name": long_name})
-    data["force_error"] = (dims, force_error, FORCE_ERROR)
-    for word, texts in words.items():
-        data[word] = (dims, texts.astype(str), {"long_name": f"{word} of the state"})
-    for variable, texts in labels.items():
-        long_name = variable.replace("_", " ") + (" key" if variable == "case" else "")
-        data[variable] = (dims[:-1], texts.astype(str), {"long_name": long_name})
-    return data.assign(_zero_force(name, curves, data))
-
-
-def _axes(held: str, swept: str, curves: Sequence[Curve]) -> dict[str, list[Any]]:
-    """The labels along each dimension."""
-    places = [curve.place for curve in curves]
-    variants = {place.variant for place in places}
-    models = {place.model for place in places}
-    return {
-        "muscle": sorted({place.muscle for place in places}),
-        "model": [model for model in MODELS if model in models],
-        "variant": sorted(variants, key=lambda variant: (variant != "default", variant)),
-        held: sorted({place.held for place in places}),
-        swept: sorted({stop for curve in curves for stop in curve.stops}),
-    }
-
-
-def _labels(curve: Curve, held: str) -> dict[str, Any]:
-    """Where a curve stands along every dimension but its own."""
-    place = curve.place
-    return {
-        "muscle": place.muscle,
-        "model": place.model,
-        "variant": place.variant,
-        held: place.held,
-    }
-
-
-def _coordinates(
-    axes: Mapping[str, list[Any]], muscles: Mapping[str, StudiedMuscle]
-) -> dict[str, Any]:
-    """Labels of the dimensions, and what the muscles are made of."""
-    found: dict[str, Any] = {
-        dim: (dim, values, CONTROLS.get(dim, {})) for dim, values in axes.items()
-    }
-    for name, (unit, long_name, value) in MUSCLE.items():
-        attrs = ({"units": unit} if unit else {}) | {"long_name": long_name}
-        found[name] = ("muscle", [value(muscles[m]) for m in axes["muscle"]], attrs)
-    return found
-
-
-def _zero_force(name: str, curves: Sequence[Curve], data: xr.Dataset) -> dict[str, xr.DataArray]:
-    """The state of zero force of the curves that have one; nothing if none has."""
-    with_zero = [curve for curve in curves if curve.case.path.zero_force]
-    if not with_zero:
+def _encoding(variable: xr.Variable) -> dict[str, Any]:
+    if not variable.dims:
         return {}
-    variable, state, long_name = ZERO_FORCE[name]
-    value = xr.full_like(data.case, NAN, dtype=float)
-    words = {word: xr.full_like(data.case, "", dtype=object) for word in WORDS}
-    value.attrs = {"units": CONTROLS[state]["units"], "long_name": long_name}
-    for curve in with_zero:
-        at = _labels(curve, HELD_KEY[name])
-        last = len(curve.case.path.stops)
-        value.loc[at] = curve.solution.states[state][last]
-        for word, text in _words(curve.solution, last).items():
-            words[word].loc[at] = text
-    found = {variable: value}
-    for word, texts in words.items():
-        found[f"{variable}_{word}"] = texts.astype(str)
-        found[f"{variable}_{word}"].attrs = {"long_name": f"{word} of the state of zero force"}
-    return found
-
-
-def _words(solution: Solution, state: int) -> dict[str, str]:
-    """What is said of a state, by the names in WORDS."""
-    flags = " ".join(sorted(solution.flags[state]))
-    return {
-        "status": solution.state_status[state].value,
-        "flags": flags,
-        "note": solution.notes[state],
-    }
+    packed = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
+    return packed if variable.dtype.kind in "fi" else packed | {"dtype": "S1"}
 
 
 def _reference(found: Mapping[str, ForceMap]) -> xr.Dataset:
@@ -235,17 +140,7 @@ def _reference(found: Mapping[str, ForceMap]) -> xr.Dataset:
         },
         {
             "source": ("point", sources, {"long_name": "map; see config/reference/SOURCES.md"}),
-            "pressure": ("point", pressure, CONTROLS["pressure"]),
-            "contraction": ("point", contraction, CONTROLS["contraction"]),
+            "pressure": ("point", pressure, attributes(CONTROLS["pressure"])),
+            "contraction": ("point", contraction, attributes(CONTROLS["contraction"])),
         },
     )
-
-
-def _angle(muscle: StudiedMuscle) -> float:
-    """In degrees; rounded, for what a file says is no 17-digit number."""
-    braid = muscle.muscle.braid
-    return round(math.degrees(braid.angle), 12) if braid else NAN
-
-
-def _of_braid(muscle: StudiedMuscle, name: str) -> float:
-    return float(getattr(muscle.muscle.braid, name)) if muscle.muscle.braid else NAN

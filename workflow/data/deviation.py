@@ -17,6 +17,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from solver.status import StateStatus
+from workflow.data import labelled
 from workflow.data.reference import (
     CONTRACTIONS,
     ForceMap,
@@ -24,6 +25,7 @@ from workflow.data.reference import (
     largest_force,
     relative_deviation,
 )
+from workflow.data.states import Table
 
 RULE = "pchip"  # the interpolation of the rule
 ALL = "all"  # in place of a pressure: the mean over all states of all pressures
@@ -153,6 +155,16 @@ def table(tree: xr.DataTree, maps: Mapping[str, Mapping[str, ForceMap]]) -> pd.D
         for pressure, values in _by_pressure(states(interpolated(found, how), force, status))
     ]
     return pd.DataFrame(rows)
+
+
+def of_table(found: Table, maps: Mapping[str, Mapping[str, ForceMap]]) -> pd.DataFrame:
+    """The same of all states of a study, one muscle after the other."""
+    isobaric = set(found.curves["muscle"][found.curves["path"] == "isobaric"])
+    frames = [
+        table(labelled.tree(found.of_muscles([muscle])), {muscle: maps[muscle]})
+        for muscle in sorted(isobaric & maps.keys())
+    ]
+    return pd.concat(frames, ignore_index=True) if frames else pd.DataFrame()
 
 
 def _by_pressure(rows: pd.DataFrame) -> Iterator[tuple[float | str, dict[str, float]]]:

@@ -1,39 +1,205 @@
-"""What a figure gets of its scene, and tidy tables of its states: one row per state, with units."""
+"""The one table of states, and what a figure gets of it.
 
-from collections.abc import Iterable, Sequence
+Whatever is made of records (dataset, states.parquet, figures) is made of a ``Table``: one row per
+state, with names, units and long names from here and from solver/record.py.
+"""
+
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from geometry.muscle import Muscle
 from solver.case import Case
-from solver.load_path import HELD, SWEPT, Control
 from solver.record import VARIABLES, Solution
 from solver.status import CaseStatus, StateStatus
 from workflow.data import records
+from workflow.data.records import Curve
 from workflow.data.reference import ForceMap
 from workflow.plan import mesh_error
 from workflow.plan.plan import Plan
 from workflow.study.contents import StudiedMuscle
-from workflow.study.schema import Scene
+from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
 
-if TYPE_CHECKING:
-    import xarray as xr
+STOP, ZERO = "stop", "zero force"  # kinds of states
+CONTROLS = {  # that a path prescribes; of a state at a stop the decimals of the study file
+    "contraction": VARIABLES["contraction"],
+    "pressure": VARIABLES["pressure"],
+    "load": ("N", "load"),
+}
+WITH_ERROR = {  # quantities, and what they are called
+    "force": "force",
+    "inner_diameter_inflated": "inner diameter",
+    "contraction": "contraction",
+}
+OF_STATE = {  # columns of a state: unit, long name
+    "state": ("1", "number of the state in its record"),
+    "point": ("", f"{STOP} of the path, or state of {ZERO}"),
+    **CONTROLS,
+    **VARIABLES,
+    **{
+        f"{name}_error": (VARIABLES[name][0], f"bound on the discretisation error of the {called}")
+        for name, called in WITH_ERROR.items()
+    },
+    "status": ("", "status of the state"),
+    "flags": ("", "flags of the state"),
+    "note": ("", "note of the state"),
+}
+OF_CURVE = {  # columns of a curve
+    "muscle": ("", "muscle"),
+    "model": ("", "model"),
+    "variant": ("", "variant"),
+    "path": ("", "kind of the path: what is held and what swept"),
+    "held": ("", "value that is held; its unit is that of the control"),
+    "case": ("", "case key"),
+    "case_status": ("", "case status"),
+    "case_reason": ("", "case reason"),
+    "code": ("", "digest of the sources that solved the case"),
+}
+OF_MUSCLE = {  # columns of a muscle
+    "inner_diameter": ("mm", "initial inner diameter"),
+    "wall_thickness": ("mm", "initial wall thickness"),
+    "length": ("mm", "initial length between the caps"),
+    "braid_angle": ("degree", "braid angle at the mean layer diameter"),
+    "lead": ("mm", "lead of the threads"),
+    "threads": ("1", "threads per layer"),
+    "thread_stiffness": ("N", "EA of a thread"),
+    "material": ("", "rubber"),
+}
+
+
+def attributes(column: tuple[str, str]) -> dict[str, str]:
+    """Unit and long name as attributes; texts have no unit."""
+    unit, long_name = column
+    return ({"units": unit} if unit else {}) | {"long_name": long_name}
+
+
+@dataclass(frozen=True)
+class Table:
+    """All states of some curves.
+
+    Attributes
+    ----------
+    muscles : one row per muscle, by name; columns as in OF_MUSCLE
+    curves : one row per curve; columns as in OF_CURVE
+    states : one row per state, those of a curve together and in its order; columns as in OF_STATE,
+        and ``curve``, the row of its curve
+    """
+
+    muscles: pd.DataFrame
+    curves: pd.DataFrame
+    states: pd.DataFrame
+
+    @classmethod
+    def of(cls, curves: Sequence[Curve], muscles: Mapping[str, StudiedMuscle]) -> "Table":
+        """The states of solved curves: at the stops that are wanted, and of zero force."""
+        named = sorted({curve.place.muscle for curve in curves})
+        return cls(
+            pd.DataFrame([_of_muscle(muscles[name]) for name in named], named, list(OF_MUSCLE)),
+            pd.DataFrame([_of_curve(curve) for curve in curves], columns=list(OF_CURVE)),
+            _of_states(curves),
+        )
+
+    def of_muscles(self, names: Collection[str]) -> "Table":
+        """The curves and states of some muscles."""
+        return self.part(self.curves["muscle"].isin(names))
+
+    def part(self, chosen: "pd.Series[bool]") -> "Table":
+        """Some of the curves, with their states and muscles."""
+        curves = self.curves[chosen]
+        muscles = self.muscles.loc[sorted(set(curves["muscle"]))]
+        return Table(muscles, curves, self.states[self.states["curve"].isin(curves.index)])
+
+    def joined(self) -> pd.DataFrame:
+        """One row per state, with what its curve and its muscle are."""
+        curves = self.curves.join(self.muscles, on="muscle")
+        return self.states.join(curves, on="curve").drop(columns="curve")
+
+
+def _of_muscle(studied: StudiedMuscle) -> list[Any]:
+    muscle, braid, thread = studied.muscle, studied.muscle.braid, studied.thread
+    return [
+        muscle.inner_diameter,
+        muscle.wall_thickness,
+        muscle.length,
+        round(math.degrees(braid.angle), 12)
+        if braid
+        else np.nan,  # what a file says is no 17-digit number
+        braid.lead if braid else np.nan,
+        float(braid.threads) if braid else np.nan,
+        thread.stiffness if thread else np.nan,
+        studied.material,
+    ]
+
+
+def _of_curve(curve: Curve) -> list[Any]:
+    place, solution = curve.place, curve.solution
+    names = [place.muscle, place.model, place.variant, place.group, place.held]
+    return [*names, curve.key, solution.status.value, solution.reason, solution.code]
+
+
+def _of_states(curves: Sequence[Curve]) -> pd.DataFrame:
+    wanted = [_wanted(curve) for curve in curves]
+    counts = [len(numbers) for numbers in wanted]
+
+    def joined(of_curves: Iterable[Any], kind: type = float) -> NDArray[Any]:
+        """Those states of every curve that are wanted, of arrays of all states of each."""
+        pairs = zip(of_curves, wanted, strict=True)
+        parts: list[NDArray[Any]] = [np.asarray(v, kind)[numbers] for v, numbers in pairs]
+        return np.concatenate(parts) if parts else np.empty(0, kind)
+
+    solutions = [curve.solution for curve in curves]
+    paths = [curve.case.path for curve in curves]
+    columns: dict[str, NDArray[Any]] = {
+        "curve": np.repeat(np.arange(len(curves)), counts),
+        "state": joined((range(path.states) for path in paths), int),
+        "point": joined(([STOP] * len(p.stops) + [ZERO] * p.zero_force for p in paths), object),
+        "load": np.full(sum(counts), np.nan),
+    }
+    for name in VARIABLES:
+        columns[name] = joined(solution.states[name] for solution in solutions)
+    exact = joined([*path.stops, np.nan][: path.states] for path in paths)
+    kinds = np.repeat(np.array([curve.place.group for curve in curves], object), counts)
+    held = np.repeat(np.array([curve.place.held for curve in curves], float), counts)
+    for name in CONTROLS:
+        for kind in HELD_KEY:
+            if HELD_KEY[kind] == name:
+                columns[name] = np.where(kinds == kind, held, columns[name])
+            if SWEPT_KEY[kind] == name:
+                prescribed = (kinds == kind) & np.isfinite(exact)
+                columns[name] = np.where(prescribed, exact, columns[name])
+    for name in WITH_ERROR:
+        columns[f"{name}_error"] = joined(
+            mesh_error.error(curve.case, curve.solution, name) for curve in curves
+        )
+    columns["status"] = joined(
+        ([s.value for s in found.state_status] for found in solutions), object
+    )
+    columns["flags"] = joined(([" ".join(sorted(f)) for f in s.flags] for s in solutions), object)
+    columns["note"] = joined((solution.notes for solution in solutions), object)
+    return pd.DataFrame({name: columns[name] for name in ("curve", *OF_STATE)})
+
+
+def _wanted(curve: Curve) -> list[int]:
+    """Numbers of the states of a curve: of its stops, then that of zero force."""
+    path = curve.case.path
+    numbers = [path.stops.index(stop) for stop in curve.stops if stop in path.stops]
+    return numbers + [len(path.stops)] * path.zero_force
+
+
+# --- what a figure gets ---------------------------------------------------------------------------
 
 COLUMN = {name: f"{name} [{unit}]" for name, (unit, _) in VARIABLES.items()}
 CONTRACTION, PRESSURE, FORCE = COLUMN["contraction"], COLUMN["pressure"], COLUMN["force"]
 DIAMETER, WALL = "inner_diameter [mm]", "wall_thickness [mm]"
 ANGLE, THREADS = "braid_angle [deg]", "threads [1]"
-CONTROL = {
-    Control.CONTRACTION: CONTRACTION,
-    Control.PRESSURE: PRESSURE,
-    Control.FORCE: FORCE,
-}
-WITH_ERROR = {"force", "inner_diameter_inflated", "contraction"}  # quantities
+CONTROL = {"contraction": CONTRACTION, "pressure": PRESSURE, "load": FORCE}
 ZERO_FORCE = {"threshold_pressure", "free_contraction"}
 GOOD = StateStatus.CONVERGED.value
 SHOWN = (GOOD, StateStatus.UNSTABLE.value)  # statuses whose numbers may be shown
@@ -99,11 +265,9 @@ class SceneData:
         return {name: self.plan.study.muscles[name].material for name in self.scene.muscles}
 
     @cached_property
-    def tree(self) -> "xr.DataTree":
-        """The curves as in the dataset (workflow/data/dataset.py)."""
-        from workflow.data import dataset  # a second, and most figures do without
-
-        return dataset.build(self.curves, self.plan.study.muscles)
+    def table(self) -> Table:
+        """The states of its curves."""
+        return Table.of(self.curves, self.studied)
 
 
 def error_of(column: str) -> str:
@@ -119,45 +283,27 @@ def states(data: SceneData, quantities: Iterable[str]) -> pd.DataFrame:
     controls with the exact numbers of the study, the quantities, the discretisation errors of some
     of them, the largest thread stretch, status, flags, the strength of a thread.
     """
-    frames = [of_curve(data.scene, quantities, *solved) for solved in data.solutions]
-    table = pd.concat(frames, ignore_index=True).drop(columns=NUMBER)
+    table = numbered(data.scene, data.table, quantities).drop(columns=NUMBER)
     known = {name: made.limits.thread_strength for name, made in data.studied.items()}
     return table.assign(**{STRENGTH: table["muscle"].map(known).astype(float)})
 
 
-def of_curve(
-    scene: Scene,
-    quantities: Iterable[str],
-    muscle: str,
-    model: str,
-    variant: str,
-    held: float,
-    case: Case,
-    solution: Solution,
-) -> pd.DataFrame:
-    """The states of one curve, and their numbers in its record."""
-    path = case.path
-    wanted = [path.stops.index(stop) for stop in scene.swept if stop in path.stops]
-    points = ["stop"] * len(wanted)
-    if path.zero_force and ZERO_FORCE & set(scene.quantities):
-        wanted.append(len(path.stops))
-        points.append("zero force")
-    rows: dict[str, Any] = {"source": model, "muscle": muscle, "variant": variant, "point": points}
-    exact = np.array([*path.stops, np.nan])[wanted]
-    swept, zero = SWEPT[path.kind], np.array(points) == "zero force"
-    solved = solution.states[swept.name.lower()][wanted]
-    rows[CONTROL[HELD[path.kind]]] = held
-    rows[CONTROL[swept]] = np.where(zero, solved, exact)
-    status = [solution.state_status[number].value for number in wanted]
+def numbered(scene: Scene, table: Table, quantities: Iterable[str]) -> pd.DataFrame:
+    """The same of a table of some curves of the scene, and the numbers of the states."""
+    found = table.joined()
+    if not ZERO_FORCE & set(scene.quantities):
+        found = found[found["point"] == STOP].reset_index(drop=True)
+    assert scene.path is not None
+    shown = found["status"].isin(SHOWN)
+    columns = {"source": found["model"]} | {n: found[n] for n in ("muscle", "variant", "point")}
+    for key in (HELD_KEY[scene.path], SWEPT_KEY[scene.path]):
+        columns[CONTROL[key]] = found[key]
     for name in quantities:
-        values = np.where(np.isin(status, SHOWN), solution.states[name][wanted], np.nan)
-        rows.setdefault(COLUMN[name], values)
+        columns.setdefault(COLUMN[name], found[name].where(shown))
         if name in WITH_ERROR:
-            rows[error_of(COLUMN[name])] = mesh_error.error(case, solution, name)[wanted]
-    shown = np.isin(status, SHOWN)
-    rows[STRETCH] = np.where(shown, solution.states["thread_stretch_max"][wanted], np.nan)
-    flags = [" ".join(sorted(solution.flags[number])) for number in wanted]
-    return pd.DataFrame(rows | {"status": status, FLAGS: flags, NUMBER: wanted})
+            columns[error_of(COLUMN[name])] = found[f"{name}_error"]
+    columns[STRETCH] = found["thread_stretch_max"].where(shown)
+    return pd.DataFrame(columns | {name: found[name] for name in ("status", FLAGS, NUMBER)})
 
 
 def describe(table: pd.DataFrame, data: SceneData) -> pd.DataFrame:

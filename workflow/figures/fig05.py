@@ -14,7 +14,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
-from workflow.data.states import CONTRACTION, GOOD, NUMBER, PRESSURE, STRENGTH, of_curve
+from workflow.data.states import CONTRACTION, GOOD, NUMBER, PRESSURE, STRENGTH, Table, numbered
 from workflow.data.stress import LARGEST, along_meridian, wall
 from workflow.figures import curves, stress_views
 from workflow.figures.labels import SERIES, constants, series
@@ -28,9 +28,10 @@ LEFT = "unstable_state"  # of a muscle that would not stay there: it is not draw
 def table(data: Any) -> pd.DataFrame:
     """Corners of all triangles and values along the meridian; of a failed state one row."""
     frames = []
-    for solved in data.solutions:
-        for _, state in of_curve(data.scene, ["contraction"], *solved).iterrows():
-            fields = solved[-1].fields.get(state[NUMBER], {})
+    for curve in data.curves:
+        of_curve = Table.of([curve], data.studied)
+        for _, state in numbered(data.scene, of_curve, ["contraction"]).iterrows():
+            fields = curve.solution.fields.get(state[NUMBER], {})
             drawn = pd.DataFrame({"where": ["nothing"]})
             if state["status"] == GOOD and _has_section(fields):
                 corners = wall(fields)

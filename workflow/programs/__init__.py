@@ -12,6 +12,7 @@ from workflow.plan.plan import Plan, read
 
 STUDY = Path("config/config.yaml")
 DATASET = Path("results/dataset.nc")
+STATES = Path("results/states.parquet")
 FAILURES = Path("results/tables/failures.csv")
 
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from geometry.files import SEALS
 from solver.status import CaseStatus
-from workflow.data import dataset, records
+from workflow.data import dataset, records, tidy
+from workflow.data.states import Table
 from workflow.figures import figure
 from workflow.programs import add_study, plan_of
 from workflow.run import failures
@@ -26,7 +27,10 @@ def run(given: argparse.Namespace) -> int:
     curves = records.curves_of_study(plan, partial=True)
     solutions = {curve.key: curve.solution for curve in curves}
     missing = sum(found.status is CaseStatus.NOT_SOLVED for found in solutions.values())
-    dataset.write(dataset.build(curves, plan.study.muscles, effects=True), FOLDER / "dataset.nc")
+    muscles, study = plan.study.muscles, given.study.name
+    tree = dataset.build(curves, muscles, study=study, effects=True)
+    dataset.write(tree, FOLDER / "dataset.nc")
+    tidy.write(Table.of(curves, muscles), FOLDER / "states.parquet")
     failures.write(plan, solutions, FOLDER / "tables/failures.csv")
     print(f"{len(solutions) - missing} of {len(solutions)} cases are solved", flush=True)
     drawn, status = 0, 0
@@ -38,5 +42,5 @@ def run(given: argparse.Namespace) -> int:
             print(f"{scene} cannot be drawn yet: {type(error).__name__}: {error}")
             status = 1
     shutil.rmtree(SEALS / FOLDER.name, ignore_errors=True)  # written as often as wanted
-    print(f"{FOLDER}: dataset.nc, tables/failures.csv and {drawn} figures")
+    print(f"{FOLDER}: dataset.nc, states.parquet, tables/failures.csv and {drawn} figures")
     return status

@@ -2,6 +2,7 @@
 #
 #   in   all records of the study; the reference maps
 #   out  results/dataset.nc             layout: workflow/data/dataset.py
+#        results/states.parquet         the same states, one row each: workflow/data/tidy.py
 #        results/tables/failures.csv    what did not work out; often a header only
 #        results/tables/deviation.csv   from the maps, of the muscles that these are of
 #        results/complete.txt           if no case failed; else the run ends with an error here
@@ -13,6 +14,7 @@ rule gather:
         sources=sources("workflow.programs.gather"),
     output:
         dataset="results/dataset.nc",
+        states="results/states.parquet",
         failures="results/tables/failures.csv",
         deviation=deviations(),
     log:
@@ -26,7 +28,7 @@ rule gather:
         "Gathering the records of all cases"
     shell:
         "python -m workflow gather --study {params.study:q}"
-        " --dataset {output.dataset:q} --failures {output.failures:q}"
+        " --dataset {output.dataset:q} --states {output.states:q} --failures {output.failures:q}"
         " {params.deviation:q} 2> {log:q}"
 
 

@@ -1,17 +1,23 @@
 """The dataset holds every state at its labels, says what is missing, and is the same each time."""
 
 import csv
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import h5py
 import numpy as np
+import pint
 import pytest
 import xarray as xr
 
+import workflow
+from solver import record
 from solver.record import VARIABLES
 from solver.status import Flag
-from workflow.data import dataset, records
-from workflow.data.states import SceneData
+from workflow import data
+from workflow.data import dataset, records, tidy
+from workflow.data.states import SceneData, Table
 from workflow.plan.plan import Place
 from workflow.run import failures
 from workflow.study.errors import StudyError
@@ -34,7 +40,7 @@ def tree(study, tmp_path_factory):
     found, folder = study
     path = tmp_path_factory.mktemp("dataset") / "dataset.nc"
     curves = records.curves_of_study(found, folder)
-    dataset.write(dataset.build(curves, found.study.muscles), path)
+    dataset.write(dataset.build(curves, found.study.muscles, study="study.yaml"), path)
     with xr.open_datatree(path) as opened:
         return opened.load()
 
@@ -47,7 +53,8 @@ def test_effects_stand_in_the_whole_dataset():
 
 
 def test_groups_and_dimensions(tree):
-    assert sorted(tree.children) == ["isobaric", "isometric", "isotonic", "reference"]
+    labelled = ["isobaric", "isometric", "isotonic"]
+    assert sorted(tree.children) == ["curves", *labelled, "muscles", "reference", "states"]
     common = ("muscle", "model", "variant")
     assert tree["isobaric"].force.dims == (*common, "pressure", "contraction")
     assert tree["isometric"].force.dims == (*common, "contraction", "pressure")
@@ -86,8 +93,9 @@ def test_every_state_is_where_its_labels_say(study, tree):
 def test_what_nobody_asked_for_is_empty(tree):
     group = tree["isobaric"].sel(muscle="bare", model="membrane")
     assert group.force.isnull().all()
-    assert (group.status == "").all()
-    assert (group.case_status == "").all()
+    assert (group.status == "not_asked").all()
+    assert (group.case_status == "not_asked").all()
+    assert (group.case == "").all()
     finite = np.isfinite(tree["isobaric"].force)
     assert (finite == (tree["isobaric"].status == "converged")).all()
 
@@ -127,7 +135,7 @@ def test_threshold(study, tree):
     assert (group.threshold_pressure_flags, group.threshold_pressure_note) == ("", "")
     eq_1 = tree["isometric"].sel({**at, "model": "geometric"})
     assert np.isnan(eq_1.threshold_pressure)
-    assert eq_1.threshold_pressure_status == ""
+    assert eq_1.threshold_pressure_status == "not_asked"
     assert "free_contraction" not in tree["isobaric"]
 
 
@@ -168,19 +176,84 @@ def test_reference_has_both_maps(tree):
 
 def test_bytes_are_the_same_each_time(study, tmp_path):
     found, folder = study
-    for name in ("a.nc", "b.nc"):
+    for name in ("a", "b"):
         curves = records.curves_of_study(found, folder)
-        dataset.write(dataset.build(curves, found.study.muscles), tmp_path / name)
-    assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.nc", "b.nc"]
+        dataset.write(dataset.build(curves, found.study.muscles), tmp_path / f"{name}.nc")
+        tidy.write(Table.of(curves, found.study.muscles), tmp_path / f"{name}.parquet")
+    for suffix in ("nc", "parquet"):
+        one, other = (tmp_path / f"{name}.{suffix}" for name in ("a", "b"))
+        assert one.read_bytes() == other.read_bytes()
+    assert len(list(tmp_path.iterdir())) == 4
+
+
+def test_all_states_stand_in_one_table_too(study, tree):
+    """Those of zero force among them; a row says which curve it is of."""
+    found, _ = study
+    states, curves = tree["states"].to_dataset(), tree["curves"].to_dataset()
+    paths = [planned_case.case.path for planned_case in found.cases.values()]
+    places = [len(planned_case.places) for planned_case in found.cases.values()]
+    assert states.sizes["row"] == sum(p.states * n for p, n in zip(paths, places, strict=True))
+    key = found.scenes["threshold"][Place("isometric", "one", "solid", "default", 0.1)]
+    (curve,) = np.flatnonzero(curves.case == key)
+    rows = states.isel(row=np.flatnonzero(states.curve == curve))
+    assert rows.point.values.tolist() == ["stop", "stop", "zero force"]
+    assert rows.contraction.values.tolist() == [0.1] * 3
+    assert rows.pressure.values.tolist() == [0.1, 0.2, value(key, "pressure", 2)]
+    assert rows.volume.values.tolist() == [value(key, "volume", k) for k in range(3)]
+    assert str(curves.code[curve].values) == record.code_digest()
+
+
+def test_the_file_says_what_it_is(tree):
+    assert tree.attrs["title"] == "States of pneumatic muscles of the study study.yaml"
+    assert tree.attrs["study"] == "study.yaml"
+    assert tree.attrs["Conventions"] == "CF-1.11"
+    assert tree.attrs["source"] == f"pneumatic-muscle {workflow.VERSION}"
+    assert tree.attrs["code"] == record.code_digest()
+    assert (tree.attrs["filetype"], tree.attrs["layout"]) == ("muscle-dataset", 3)
+
+
+def test_the_version_is_that_of_the_project():
+    for file in ("pyproject.toml", "CITATION.cff"):
+        text = (Path(__file__).parents[3] / file).read_text()
+        assert re.search(r"^version\W+([\d.]+)", text, re.M)[1] == workflow.VERSION
+
+
+def test_all_units_can_be_read(tree):
+    """Those of all groups, as pint reads them."""
+    units = pint.UnitRegistry()
+    effects = dataset.build([], {}, effects=True)
+    found = {
+        f"{group.path}/{name}": variable
+        for group in (*tree.subtree, *effects.subtree)
+        for name, variable in group.variables.items()
+    }
+    read = {str(units.Unit(v.attrs["units"])) for v in found.values() if "units" in v.attrs}
+    assert read > {"megapascal", "millimeter ** 3", "millimeter * newton", "degree"}
+    without = {n for n, v in found.items() if v.dtype.kind == "f" and "units" not in v.attrs}
+    assert without == {"/curves/held"}  # it goes with the kind of the path
+
+
+def test_what_is_read_on_demand_is_what_stands_in_the_file(study, tree, tmp_path):
+    found, folder = study
+    path = tmp_path / "dataset.nc"
+    curves = records.curves_of_study(found, folder)
+    dataset.write(dataset.build(curves, found.study.muscles, study="study.yaml"), path)
+    opened = data.open(path)
+    for group in ("isobaric", "isometric", "isotonic"):
+        xr.testing.assert_identical(opened[group].to_dataset(), tree[group].to_dataset())
+    curve = data.curve(path, muscle="one", model="membrane", load=200)
+    assert curve.contraction.dims == ("pressure",)
+    few = data.curve(path, muscle="one", model="solid", variant="paper", pressure=0.3)
+    assert few.contraction.values.tolist() == [0.05, 0.2]
 
 
 def test_a_scene_has_its_own_stops_alone(study):
-    data = SceneData.read(study[0], "few", study[1])
-    group = data.tree["isobaric"]
+    few = SceneData.read(study[0], "few", study[1])
+    tree = dataset.build(few.curves, few.studied)
+    group = tree["isobaric"]
     assert group.contraction.values.tolist() == [0.05, 0.2]
     assert group.variant.values.tolist() == ["default", "paper"]
-    assert set(data.tree.children) == {"isobaric", "reference"}
+    assert set(tree.children) == {"curves", "isobaric", "muscles", "reference", "states"}
     key = study[0].scenes["few"][Place("isobaric", "one", "solid", "default", 0.3)]
     at = {"muscle": "one", "model": "solid", "variant": "default", "pressure": 0.3}
     force = group.force.sel(at).sel(contraction=0.2)

@@ -108,7 +108,10 @@ def test_what_is_not_there_is_an_error(packages, text, error):
 @pytest.mark.parametrize(
     ("modules", "arguments"),
     [
-        (["workflow.programs.gather"], ["gather", "--dataset", "d.nc", "--failures", "f.csv"]),
+        (
+            ["workflow.programs.gather"],
+            ["gather", "--dataset", "d.nc", "--states", "s.parquet", "--failures", "f.csv"],
+        ),
         (
             ["workflow.programs.figure", "workflow.figures.fig90"],
             ["figure", "--scene", "fig90", "--output", "f.png"],
@@ -122,7 +125,8 @@ def test_what_is_not_there_is_an_error(packages, text, error):
 )
 def test_programs_open_nothing_else(project, tmp_path, modules, arguments):
     """Every file of this project that a program opens or imports is one of its sources."""
-    given = [str(tmp_path / a) if a in ("d.nc", "f.csv", "f.png", "p") else a for a in arguments]
+    made = ("d.nc", "s.parquet", "f.csv", "f.png", "p")
+    given = [str(tmp_path / a) if a in made else a for a in arguments]
     done = subprocess.run(
         [sys.executable, "-c", TRACER, str(project.folder.resolve()), *given],
         cwd=project.folder,
