@@ -12,8 +12,10 @@ from solver.case import Case
 from solver.load_path import LoadPath
 from solver.material import MooneyRivlin, Thread
 from solver.status import StateStatus
-from workflow.data.states import SceneData
-from workflow.plan.plan import plan
+from workflow.data.records import Curve
+from workflow.data.states import SceneData, Table
+from workflow.plan.plan import Place, plan
+from workflow.study.contents import StudiedMuscle
 from workflow.study.study import load
 
 KNOCKED_DOWN = 0.8  # force of the made-up finite elements over that of Eq. (1)
@@ -93,20 +95,26 @@ def small_scene():
         )
         stops = (0.0, 0.05, 0.1, 0.15, 0.2)
         path = LoadPath(kind="isobaric", held=0.3, stops=stops)
-        solutions = []
+        rubber, thread = MooneyRivlin(c10=0.345083, c01=0.083805), Thread(stiffness=315)
+        of_muscle = StudiedMuscle(muscle=muscle, material="nbr", rubber=rubber, thread=thread)
+        studied = {"dmsp20": of_muscle}
+        solved = []
         for model in models:
             case = Case(
                 muscle=muscle,
-                rubber=MooneyRivlin(c10=0.345083, c01=0.083805),
-                thread=Thread(stiffness=315),
+                rubber=rubber,
+                thread=thread,
                 path=path,
                 model=model,
             )
-            solutions.append(("dmsp20", model, "default", 0.3, case, spoil(solve(case))))
+            place = Place("isobaric", "dmsp20", model, "default", 0.3)
+            solved.append(Curve(place, case.key, case, spoil(solve(case)), stops))
         return SimpleNamespace(
             name="small",
-            scene=SimpleNamespace(held=(0.3,), swept=stops, quantities=()),
-            solutions=solutions,
+            scene=SimpleNamespace(path="isobaric", held=(0.3,), swept=stops, quantities=()),
+            curves=solved,
+            table=Table.of(solved, studied),
+            studied=studied,
             muscles={"dmsp20": muscle},
             materials={"dmsp20": "nbr"},
         )
