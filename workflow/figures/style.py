@@ -13,6 +13,7 @@ import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
+from matplotlib.text import Text
 from matplotlib.ticker import MultipleLocator, PercentFormatter
 from matplotlib.transforms import ScaledTranslation
 
@@ -238,6 +239,22 @@ def grow(figure: Figure, *, top: float = 0, bottom: float = 0) -> None:
     )
 
 
+def fit_titles(figure: Figure) -> None:
+    """Makes a title smaller that would run into the axes beside it, or out of the figure."""
+    if figure.get_layout_engine() is not None:
+        return  # which moves the axes when it is drawn
+    for ax in figure.axes:
+        for title in ax.findobj(Text, include_self=False):
+            if not title.get_text() or title.get_text() != ax.get_title("left"):
+                continue
+            own = title.get_window_extent()
+            beside = [a.bbox for a in figure.axes if a.bbox.x0 > ax.bbox.x1]
+            right = [box.x0 for box in beside if box.y0 < own.y1 < box.y1 + 2 * own.height]
+            room = min([*right, figure.bbox.x1]) - own.x0 - own.height / 2
+            while title.get_window_extent().width > room > 0 and title.get_fontsize() > 1:
+                title.set_fontsize(0.95 * title.get_fontsize())  # not in proportion: hinting
+
+
 def save(figure: Figure, path: Path) -> None:
     """Writes a figure, whole or not at all; the ending of the path says the format.
 
@@ -249,5 +266,6 @@ def save(figure: Figure, path: Path) -> None:
     metadata = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}
     if path.suffix not in metadata:
         raise ValueError(f"{path}: a figure is .png or .svg")
+    fit_titles(figure)
     with atomic_write(path) as beside:
         figure.savefig(beside, format=path.suffix[1:], metadata=metadata[path.suffix])

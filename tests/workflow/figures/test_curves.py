@@ -1,5 +1,7 @@
 """Failed states are not drawn as if they had not failed."""
 
+from itertools import pairwise
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,7 +9,7 @@ from matplotlib.figure import Figure
 
 from solver.status import StateStatus
 from workflow.data.states import CONTRACTION, FORCE, PRESSURE, states
-from workflow.figures import curves
+from workflow.figures import curves, style
 from workflow.figures.labels import SERIES, series
 
 
@@ -135,3 +137,19 @@ def test_muscles_that_a_name_would_mix_are_told_apart(small_scene):
     assert set(series(both, [PRESSURE], apart=False)) == {"0.3 MPa"}
     variants = pd.concat([table, table.assign(variant="paper")], ignore_index=True)
     assert set(series(variants, [PRESSURE])) == {"default", "paper"}
+
+
+@pytest.mark.parametrize("columns", [1, 2, 3])
+def test_a_long_title_stays_beside_the_next(columns):
+    figure, axes = style.panels(style.FULL, 3, 1, columns)
+    for ax in axes[0]:
+        ax.set_title("gripper_finger_of_the_left_hand_number_twenty_two, variant, 0.35 MPa")
+    style.fit_titles(figure)
+    ends = [ax._left_title.get_window_extent() for ax in axes[0]]
+    for near, far in pairwise(ends):
+        assert near.x1 < far.x0
+    assert ends[-1].x1 < figure.bbox.x1
+    short = axes[0, 0].set_title("0.3 MPa")
+    short.set_fontsize(8.5)
+    style.fit_titles(figure)
+    assert short.get_fontsize() == 8.5
