@@ -5,7 +5,9 @@ neighbouring stops is compared with the trapezoid of its recorded derivative (dF
 path, dF/dp on an isometric one, on an isotonic one the contraction by de/dp). Where they differ by
 more than a share of the largest value, the curve is solved once more with stops in between, and
 again: mostly it only bends there. A state that those finer steps reach with another value is taken
-from them. Where the difference stays, the muscle snaps; what lies behind is of another branch.
+from them. Where the difference stays and the step of the free quantity has not become smaller
+with that of the control, the muscle snaps; what lies behind is of another branch. (A net of rigid
+threads begins with an infinite slope: its steps go with the root of the control's.)
 """
 
 import math
@@ -23,6 +25,7 @@ SHARE = 0.05  # of the curve's largest value: the difference that is looked at
 SAME = 1e-3  # of the curve's largest value: the difference of two states that are the same
 BETWEEN = 3  # stops in between
 ROUNDS = 3
+JUMP = 0.75  # share of a step of the free quantity that stays in a quarter of the control's
 NEWTON_SLACK = 100.0  # times the tolerance: how far a state may be from its controls
 States = dict[str, NDArray[np.float64]]
 Solved = tuple[States, dict[int, States]]  # states, and fields by state
@@ -88,11 +91,13 @@ def snaps(case: Case, solved: Solved, again: Callable[[Case], Solved]) -> list[t
         return []
     kept = [path.stops[k] for k in reached]  # what has no state is not tried again
     stops, values = path.stops, solved[0]
+    before = stops, values
     for _ in range(ROUNDS):
         found = gaps(_with_stops(case, stops), values)
         if not found:
             break
         more = [x for k in found for x in np.linspace(stops[k], stops[k + 1], BETWEEN + 2)[1:-1]]
+        before = stops, values
         stops = tuple(sorted({*kept, *(set(stops) - set(path.stops)), *map(float, more)}))
         fine = again(_with_stops(case, stops))
         values = fine[0]
@@ -104,7 +109,30 @@ def snaps(case: Case, solved: Solved, again: Callable[[Case], Solved]) -> list[t
             fine = again(replace(case, path=replace(path, stops=stops)))
             places, reached = [*places, len(stops)], np.append(reached, len(path.stops))
         _take_over(solved, fine, dict(zip(map(int, reached), places, strict=True)))
-    return [(stops[k], stops[k + 1]) for k in gaps(_with_stops(case, stops), values)]
+    return [
+        (stops[k], stops[k + 1])
+        for k in gaps(_with_stops(case, stops), values)
+        if _jumps(case, stops[k], stops[k + 1], (stops, values), before)
+    ]
+
+
+def _jumps(
+    case: Case,
+    low: float,
+    high: float,
+    now: tuple[tuple[float, ...], States],
+    before: tuple[tuple[float, ...], States],
+) -> bool:
+    """Whether nearly all of a step of the round before is in this quarter of its interval."""
+    coarse = before[0]
+    above = next(stop for stop in coarse if stop >= high)
+    below = next(stop for stop in reversed(coarse) if stop <= low)
+
+    def step(a: float, b: float, found: tuple[tuple[float, ...], States]) -> float:
+        value = free_quantity(_with_stops(case, found[0]), found[1])[1]
+        return float(abs(value[found[0].index(b)] - value[found[0].index(a)]))
+
+    return not step(low, high, now) <= JUMP * step(below, above, before)
 
 
 def _with_stops(case: Case, stops: tuple[float, ...]) -> Case:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from solver import continuity, solve
+from solver.effects import Effects
 from solver.freefem import Limits
 from solver.judge import judged
 from solver.load_path import LoadPath
@@ -79,6 +80,19 @@ def test_a_curve_that_bends_between_far_stops_is_one_branch(case):
     assert found == []
     assert 1 <= runs <= continuity.ROUNDS
     np.testing.assert_array_equal(states["force"], [branch[0](e) for e in STOPS])
+
+
+def test_an_infinite_slope_at_a_stop_is_no_snap(case):
+    """Rigid threads leave their cylinder so: the force falls by the root of the contraction."""
+    root = lambda e: 878 - 1500 * math.sqrt(e), lambda e: -750 / math.sqrt(max(e, 1e-12))
+    assert snaps(case, root)[0] == []
+
+
+@pytest.mark.parametrize("stops", [(0.0, 0.025, 0.05, 0.15), (0.0, 0.1, 0.2)])
+def test_a_net_of_rigid_threads_is_one_branch(make_case, solve_case, stops):
+    path = LoadPath(kind="isobaric", held=0.3, stops=stops)
+    rigid = make_case(model="cylinder", path=path, effects=Effects(stretch="rigid"))
+    assert solve_case(rigid).state_status == [CONVERGED] * len(stops)
 
 
 def test_a_snap_stays_and_is_found_where_it_is(case):
