@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.case import Case
-from solver.load_path import HELD, SWEPT, Control, PathKind
+from solver.load_path import Control, PathKind
 
 SHARE = 0.05  # of the curve's largest value: the difference that is looked at
 SAME = 1e-3  # of the curve's largest value: the difference of two states that are the same
@@ -29,15 +29,14 @@ JUMP = 0.75  # share of a step of the free quantity that stays in a quarter of t
 NEWTON_SLACK = 100.0  # times the tolerance: how far a state may be from its controls
 States = dict[str, NDArray[np.float64]]
 Solved = tuple[States, dict[int, States]]  # states, and fields by state
-ROW = {Control.CONTRACTION: "contraction", Control.PRESSURE: "pressure", Control.FORCE: "force"}
 
 
 def check_state(case: Case, stop: int, row: dict[str, float]) -> None:
     """Raise ValueError if a row is no state of the curve at a stop (the last: of zero force)."""
     path = case.path
-    asked = {HELD[path.kind]: path.held}
+    asked = {path.kind.held: path.held}
     if stop < len(path.stops):
-        asked[SWEPT[path.kind]] = path.stops[stop]
+        asked[path.kind.swept] = path.stops[stop]
     modulus = case.rubber.c10 + case.rubber.c01
     sizes = {
         Control.CONTRACTION: 1.0,
@@ -45,9 +44,9 @@ def check_state(case: Case, stop: int, row: dict[str, float]) -> None:
         Control.FORCE: modulus * math.pi * case.muscle.inner_radius**2,
     }
     for control, value in asked.items():
-        found = row[ROW[control]]
+        found = row[control.variable]
         if not abs(found - value) <= NEWTON_SLACK * case.numerics.newton.tolerance * sizes[control]:
-            raise ValueError(f"a state whose {ROW[control]} is {found:g} instead of {value:g}")
+            raise ValueError(f"a state whose {control.variable} is {found:g} instead of {value:g}")
     for name, number in row.items():
         if not (math.isfinite(number) or name.startswith("smoothing")):
             raise ValueError(f"a state whose {name} is {number}")
@@ -87,7 +86,7 @@ def snaps(case: Case, solved: Solved, again: Callable[[Case], Solved]) -> list[t
     """
     path = case.path
     reached = np.flatnonzero(np.isfinite(solved[0]["force"][: len(path.stops)]))
-    if not reached.size:
+    if not reached.size or path.kind.by_way:  # more stops would be another way
         return []
     kept = [path.stops[k] for k in reached]  # what has no state is not tried again
     stops, values = path.stops, solved[0]
@@ -152,7 +151,7 @@ def _differ(
     places: Sequence[int],
 ) -> bool:
     """Whether finer steps have reached some states with another value."""
-    name = "force" if case.path.kind is not PathKind.ISOTONIC else "contraction"
+    name = case.path.kind.follows
     values = states[name][numbers]
     largest = np.max(np.abs(values))
     return bool(np.any(np.abs(fine[name][places] - values) > SAME * largest))

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from solver import zero_force
 from solver.case import Case
-from solver.load_path import CONTRACTION_LIMITS, SWEPT, PathKind
+from solver.load_path import CONTRACTION_LIMITS, PathKind
 from solver.record import Solution
 from solver.status import CaseStatus, StateStatus, case_status, state_status
 
@@ -88,7 +88,7 @@ def _too_far(case: Case, states: States) -> set[int]:
 def _among_invalid(case: Case, states: States, status: Sequence[StateStatus]) -> bool:
     """Whether all stops next to the state of zero force are invalid."""
     stops = case.path.stops
-    above = int(np.searchsorted(stops, states[SWEPT[case.path.kind].name.lower()][-1]))
+    above = int(np.searchsorted(stops, states[case.path.kind.swept.variable][-1]))
     near = [status[k] for k in (above - 1, above) if 0 <= k < len(stops)]
     return all(s is StateStatus.INVALID_STATE for s in near)
 

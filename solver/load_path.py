@@ -18,14 +18,39 @@ class Control(IntEnum):
     """What can be prescribed; the numbers are those of solver/path/control.idp."""
 
     CONTRACTION = 0  # 1 - l/L
-    PRESSURE = 1  # MPa
-    FORCE = 2  # N, positive where the muscle pulls
-    VOLUME = 3  # mm^3, enclosed by the whole muscle
+    PRESSURE = 1
+    FORCE = 2  # positive where the muscle pulls
+    VOLUME = 3  # enclosed by the whole muscle
+
+    @property
+    def key(self) -> str:
+        """Its name in study files and datasets: a force that is prescribed is a load."""
+        return ("contraction", "pressure", "load", "volume")[self]
+
+    @property
+    def variable(self) -> str:
+        """Its name among the variables of a state (solver/record.py)."""
+        return ("contraction", "pressure", "force", "volume")[self]
 
     @property
     def unit(self) -> str:
         """Of its values."""
         return ("1", "MPa", "N", "mm^3")[self]
+
+    def text(self, value: float) -> str:
+        """A value as in messages: ``0.3 MPa``; a contraction in per cent."""
+        return f"{100 * value:g} %" if self.unit == "1" else f"{value:g} {self.unit}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Words:
+    """What is said of a kind of path; see the properties of PathKind."""
+
+    held: Control
+    swept: Control
+    follows: str
+    zero_force: str = ""
+    by_way: bool = False
 
 
 class PathKind(StrEnum):
@@ -35,17 +60,51 @@ class PathKind(StrEnum):
     ISOMETRIC = "isometric"  # contraction held, pressure swept
     ISOTONIC = "isotonic"  # load held, pressure swept
 
+    @property
+    def held(self) -> Control:
+        """The control that stays as it is."""
+        return WORDS[self].held
 
-HELD = {
-    PathKind.ISOBARIC: Control.PRESSURE,
-    PathKind.ISOMETRIC: Control.CONTRACTION,
-    PathKind.ISOTONIC: Control.FORCE,
+    @property
+    def swept(self) -> Control:
+        """The control that goes through the stops."""
+        return WORDS[self].swept
+
+    @property
+    def follows(self) -> str:
+        """The variable of a state that the two controls leave free, and that is asked for."""
+        return WORDS[self].follows
+
+    @property
+    def zero_force(self) -> str:
+        """The name of the swept value at which there is no force; empty if that is not asked."""
+        return WORDS[self].zero_force
+
+    @property
+    def by_way(self) -> bool:
+        """Whether states depend on the way to them.
+
+        Then stops may turn round and repeat, and curves that differ in their stops are not one.
+        """
+        return WORDS[self].by_way
+
+
+WORDS = {
+    PathKind.ISOBARIC: _Words(
+        held=Control.PRESSURE,
+        swept=Control.CONTRACTION,
+        follows="force",
+        zero_force="free_contraction",
+    ),
+    PathKind.ISOMETRIC: _Words(
+        held=Control.CONTRACTION,
+        swept=Control.PRESSURE,
+        follows="force",
+        zero_force="threshold_pressure",
+    ),
+    PathKind.ISOTONIC: _Words(held=Control.FORCE, swept=Control.PRESSURE, follows="contraction"),
 }
-SWEPT = {
-    PathKind.ISOBARIC: Control.CONTRACTION,
-    PathKind.ISOMETRIC: Control.PRESSURE,
-    PathKind.ISOTONIC: Control.PRESSURE,
-}
+ZERO_FORCE = {kind.zero_force: kind for kind in PathKind if kind.zero_force}
 CONTRACTION_LIMITS = (-0.5, 0.6)
 
 
@@ -89,20 +148,22 @@ class LoadPath:
         if not isinstance(self.zero_force, bool):
             raise UnsolvableCase("zero_force", self.zero_force, "true or false")
         for name, control, values in (
-            ("held", HELD[self.kind], (self.held,)),
-            ("stops", SWEPT[self.kind], self.stops),
+            ("held", self.kind.held, (self.held,)),
+            ("stops", self.kind.swept, self.stops),
         ):
             for value in values:
                 _check(name, control, value)
-        if any(b <= a for a, b in zip(self.stops, self.stops[1:], strict=False)):
+        falls = any(b <= a for a, b in zip(self.stops, self.stops[1:], strict=False))
+        if falls and not self.kind.by_way:
             raise UnsolvableCase("stops", self.stops, "rising values, each given once")
-        if self.zero_force and self.kind is PathKind.ISOTONIC:
-            raise UnsolvableCase("zero_force", True, "an isobaric or isometric path")
+        if self.zero_force and not self.kind.zero_force:
+            allowed = f"an {' or '.join(ZERO_FORCE.values())} path"
+            raise UnsolvableCase("zero_force", True, allowed)
 
     @property
     def units(self) -> dict[str, str]:
         """Of the numbers, which go with the kind."""
-        return {"held": HELD[self.kind].unit, "stops": SWEPT[self.kind].unit}
+        return {"held": self.kind.held.unit, "stops": self.kind.swept.unit}
 
     @property
     def states(self) -> int:

@@ -16,7 +16,7 @@ from solver.case import Case
 from solver.continuity import Solved, States, check_state
 from solver.effects import Volume
 from solver.judge import judged
-from solver.load_path import SWEPT, LoadPath, PathKind, Waypoint
+from solver.load_path import LoadPath, PathKind, Waypoint
 from solver.models import MODELS
 from solver.models.model import Model
 from solver.record import VARIABLES, Solution, unreached
@@ -108,16 +108,16 @@ class _Solver:
         if end.usage is not None:
             self.usage = end.usage if self.usage is None else self.usage + end.usage
         states, fields = solved
-        swept, zero = found[SWEPT[case.path.kind].name.lower()], len(case.path.stops)
+        name, zero = case.path.kind.swept.variable, len(case.path.stops)
         behind = lost_on(case, way, found)
         for k in np.flatnonzero(np.isfinite(found["force"])):
             new = np.isnan(states["force"][k])
             better = k in lost and k not in behind
-            lower = k == zero and swept[k] < states[SWEPT[case.path.kind].name.lower()][k]
+            lower = k == zero and found[name][k] < states[name][k]
             if not (new or better or lower):
                 continue
-            for name, values in states.items():
-                values[k] = found[name][k]
+            for variable, values in states.items():
+                values[k] = found[variable][k]
             if k in its_fields:
                 fields[int(k)] = its_fields[int(k)]
             lost -= {int(k)}
@@ -267,7 +267,7 @@ def composition(case: Case) -> str:
 
 def waypoint_text(case: Case, way: list[Waypoint]) -> str:
     """The file that solver/path/output.idp reads."""
-    wanted_fields = {case.path.stops.index(stop) for stop in case.fields_at}
+    wanted_fields = {k for k, stop in enumerate(case.path.stops) if stop in case.fields_at}
     lines = [str(len(way)), "0 0 0 0 0 0 0"]
     if case.path.zero_force:
         search = Search.of(case)

@@ -5,7 +5,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.load_path import PathKind
+from solver.load_path import Control, PathKind
 
 
 class StateStatus(StrEnum):
@@ -50,7 +50,7 @@ def state_status(kind: PathKind, states: dict[str, NDArray[np.float64]]) -> list
     smallest = [states[name] for name in ("min_det_f", "min_det_f_nodes", "margin")]
     valid = np.min(smallest, axis=0) > 0
     modes = np.nan_to_num(states["unstable_modes"])  # NaN where the model counts none
-    if kind is PathKind.ISOTONIC:
+    if kind.held is Control.FORCE:
         modes = modes + (states["stiffness"] < 0)
     return [
         StateStatus.NOT_REACHED

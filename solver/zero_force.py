@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from solver.case import Case
 from solver.effects import Rubber
-from solver.load_path import CONTRACTION_LIMITS, HELD, SWEPT, Control
+from solver.load_path import CONTRACTION_LIMITS, Control
 from solver.status import StateStatus
 
 SHARE = 1e-6  # of the largest force: as good as none
@@ -54,7 +54,7 @@ class Search:
     def of(cls, case: Case) -> "Search":
         """For the curve of a case."""
         path = case.path
-        held, swept = HELD[path.kind], SWEPT[path.kind]
+        held, swept = path.kind.held, path.kind.swept
         if swept is Control.CONTRACTION:
             return cls(held, path.held, swept, *CONTRACTION_LIMITS, CONTRACTION_STEP)
         limit = limit_pressure(case)
@@ -263,7 +263,7 @@ def judge(
     if np.isnan(force[-1]):
         if searched is None:
             return StateStatus.NOT_REACHED, "the curve on which to look for it was not reached"
-        contraction = SWEPT[case.path.kind] is Control.CONTRACTION
+        contraction = case.path.kind.swept is Control.CONTRACTION
         ends = [0.0 if abs(x) < 1e-12 else x for x in searched]
         low, high = ((f"{100 * x:.6g} %" if contraction else f"{x:.6g}") for x in ends)
         unit = "contraction" if contraction else "MPa"

@@ -1,10 +1,13 @@
 """The way of every kind of path, and the paths that make no sense."""
 
 import math
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from solver.load_path import RAMP_STEPS, Control, LoadPath, PathKind
+from solver import load_path
+from solver.load_path import RAMP_STEPS, ZERO_FORCE, Control, LoadPath, PathKind
 from solver.refusal import UnsolvableCase
 
 EPS, P, F = Control.CONTRACTION, Control.PRESSURE, Control.FORCE
@@ -160,3 +163,41 @@ def test_zero_force_is_true_or_false(value):
 def test_an_unknown_kind_is_refused():
     with pytest.raises(UnsolvableCase, match="isobaric, isometric, isotonic"):
         path("isochoric", 0.3, 0.1)
+
+
+# --- what is said of a kind -----------------------------------------------------------------------
+
+
+def test_words_of_every_kind():
+    words = {kind: (kind.held.key, kind.swept.key, kind.follows) for kind in PathKind}
+    assert words == {
+        "isobaric": ("pressure", "contraction", "force"),
+        "isometric": ("contraction", "pressure", "force"),
+        "isotonic": ("load", "pressure", "contraction"),
+    }
+    assert ZERO_FORCE == {"free_contraction": "isobaric", "threshold_pressure": "isometric"}
+    assert [P.text(0.3), EPS.text(0.1), F.text(200)] == ["0.3 MPa", "10 %", "200 N"]
+    assert path("isotonic", 1.0, 0.1).units == {"held": "N", "stops": "MPa"}
+    assert F.variable == "force"
+
+
+def test_where_the_way_matters_stops_may_turn_round_and_repeat(
+    monkeypatch, make_case, solve_case, mesh_of
+):
+    """States are told apart by their number; fields are of every state at the stop."""
+    kind = PathKind.ISOBARIC
+    with pytest.raises(UnsolvableCase, match="stops"):
+        path(kind, 0.3, 0.0, 0.1, 0.05, 0.1)
+    words = load_path.WORDS | {kind: replace(load_path.WORDS[kind], by_way=True)}
+    monkeypatch.setattr(load_path, "WORDS", words)
+    there_and_back = path(kind, 0.3, 0.0, 0.1, 0.05, 0.1)
+    (way,) = there_and_back.ways()
+    assert [w.second_target for w in way[RAMP_STEPS:]] == [0.0, 0.1, 0.05, 0.1]
+    for model in ("cylinder", "membrane"):
+        fields = (0.1,) if model == "membrane" else ()
+        solution = solve_case(make_case(model=model, path=there_and_back, fields_at=fields))
+        force = solution.states["force"]
+        np.testing.assert_allclose(solution.states["contraction"], [0.0, 0.1, 0.05, 0.1])
+        assert force[0] > force[2] > force[1]
+        assert force[3] == pytest.approx(force[1], rel=1e-6)
+        assert set(solution.fields) == ({1, 3} if fields else set())

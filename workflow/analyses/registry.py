@@ -2,6 +2,7 @@
 
 from workflow.analyses.analysis import Analysis, named, names
 
-DATA = ("workflow/analyses/*/analysis.py",)  # found by name
+# Found by their folders.
+DATA = ("workflow/analyses/*/__init__.py", "workflow/analyses/*/analysis.py")
 
 ANALYSES: dict[str, Analysis] = {name: named(name) for name in names()}

@@ -22,15 +22,12 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
+from solver.load_path import PathKind
 from solver.models import MODELS
 from solver.status import CaseStatus, StateStatus
 from workflow.data.states import CONTROLS, OF_CURVE, OF_MUSCLE, OF_STATE, STOP, Table, attributes
 from workflow.study.schema import HELD_KEY, SWEPT_KEY
 
-ZERO_FORCE = {
-    "isometric": ("threshold_pressure", "pressure", "pressure of zero force"),
-    "isobaric": ("free_contraction", "contraction", "contraction of zero force"),
-}
 EMPTY = {"status": StateStatus.NOT_ASKED.value, "flags": "", "note": ""}  # where no state is
 NO_CURVE = {"case": "", "case_status": CaseStatus.NOT_ASKED.value, "case_reason": ""}
 NO_VARIABLES = {"state", "point", "load", *EMPTY}  # of the columns of a state
@@ -101,7 +98,8 @@ class Group:
             texts = _spread(self.shape[:-1], curves, self.curves[name], empty)
             data[name] = (dims[:-1], texts, attributes(OF_CURVE[name]))
         if len(self.zeros):
-            variable, column, long_name = ZERO_FORCE[self.kind]
+            variable, column = PathKind(self.kind).zero_force, self.swept
+            long_name = f"{column} of zero force"
             values = _spread(self.shape[:-1], at(self.zeros), self.zeros[column], np.nan)
             data[variable] = (dims[:-1], values, attributes((CONTROLS[column][0], long_name)))
             for name, empty in EMPTY.items():

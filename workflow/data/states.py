@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from geometry.muscle import Muscle
 from solver.case import Case
+from solver.load_path import ZERO_FORCE
 from solver.record import VARIABLES, Solution
 from solver.status import CaseStatus, StateStatus
 from workflow.data import records
@@ -200,7 +201,6 @@ CONTRACTION, PRESSURE, FORCE = COLUMN["contraction"], COLUMN["pressure"], COLUMN
 DIAMETER, WALL = "inner_diameter [mm]", "wall_thickness [mm]"
 ANGLE, THREADS = "braid_angle [deg]", "threads [1]"
 CONTROL = {"contraction": CONTRACTION, "pressure": PRESSURE, "load": FORCE}
-ZERO_FORCE = {"threshold_pressure", "free_contraction"}
 GOOD = StateStatus.CONVERGED.value
 SHOWN = (GOOD, StateStatus.UNSTABLE.value)  # statuses whose numbers may be shown
 REFERENCE = "reference"  # status of what was not computed
@@ -291,7 +291,7 @@ def states(data: SceneData, quantities: Iterable[str]) -> pd.DataFrame:
 def numbered(scene: Scene, table: Table, quantities: Iterable[str]) -> pd.DataFrame:
     """The same of a table of some curves of the scene, and the numbers of the states."""
     found = table.joined()
-    if not ZERO_FORCE & set(scene.quantities):
+    if not ZERO_FORCE.keys() & set(scene.quantities):
         found = found[found["point"] == STOP].reset_index(drop=True)
     assert scene.path is not None
     shown = found["status"].isin(SHOWN)

@@ -5,6 +5,7 @@ from math import isnan
 
 from solver.case import Case
 from solver.effects import EFFECTS
+from solver.load_path import PathKind
 from solver.models import MODELS
 from workflow.plan import effect_costs, model_choice
 from workflow.plan.model_choice import Choice, Estimate
@@ -32,7 +33,7 @@ def lines(plan: Plan) -> Iterator[str]:
 def _wish(scene: Scene, choice: Choice) -> str:
     assert scene.path is not None
     swept = scene.swept
-    usual = "contraction" if scene.path == "isotonic" else "force"
+    usual = PathKind(scene.path).follows
     held = ", ".join(f"{value:g}" for value in scene.held)
     given = "" if scene.tolerance else " (if not said otherwise)"
     forced = "".join(f", {effect} {state}" for effect, state in sorted(scene.effects.items()))

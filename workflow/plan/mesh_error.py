@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 from geometry.grading import Grading
 from solver.case import Case
 from solver.effects import Effects
-from solver.load_path import PathKind
 from solver.models import MODELS
 from solver.numerics import KINDS, Numerics
 from solver.record import Solution
@@ -56,7 +55,7 @@ def error(case: Case, solution: Solution, variable: str) -> NDArray[np.float64]:
     values = solution.states[variable]
     if MODELS[case.model].mesh is None:
         return np.where(np.isfinite(values), 0.0, np.nan)
-    if variable == "contraction" and case.path.kind is PathKind.ISOTONIC:
+    if variable == "contraction" == case.path.kind.follows:
         per_contraction = np.abs(solution.states["stiffness"]) * case.muscle.length
         return np.asarray(error(case, solution, "force") / per_contraction)
     share = _share(case, variable)

@@ -16,6 +16,7 @@ from math import inf, isnan
 from typing import Any
 
 from solver.effects import EFFECTS, KINDS, Effects, active
+from solver.load_path import PathKind
 from solver.models import MODELS
 from solver.numerics import Numerics
 from solver.refusal import UnsolvableCase
@@ -244,7 +245,8 @@ def _change(study: Study, scene: Scene, effect: MeasuredEffect, factor: float) -
 
 def _judged(scene: Scene) -> list[str]:
     """Columns of effect_costs.csv that tell the error of what a scene wants."""
-    names = ["contraction" if scene.path == "isotonic" else "force"]
+    assert scene.path is not None
+    names = [PathKind(scene.path).follows]
     if {"inner_diameter", "outer_diameter", "volume"} & set(scene.quantities):
         names.append("diameter")
     if "threshold_pressure" in scene.quantities:

@@ -15,7 +15,7 @@ from geometry import section
 from geometry.grading import UnbuildableMesh
 from geometry.muscle import Muscle
 from solver.case import Case, digest
-from solver.load_path import LoadPath
+from solver.load_path import ZERO_FORCE, LoadPath, PathKind
 from solver.models import MODELS
 from workflow.plan import model_choice
 from workflow.study.contents import Study, Variant
@@ -24,7 +24,6 @@ from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
 from workflow.study.study import load
 
 FIELDS = {"stress", "deformed_shape"}
-ZERO_FORCE = {"threshold_pressure", "free_contraction"}
 
 
 @dataclass(frozen=True, order=True)
@@ -39,11 +38,7 @@ class Place:
 
     def __str__(self) -> str:
         """As in messages: ``dmsp20 solid isobaric 0.3 MPa``."""
-        held = {
-            "isobaric": f"{self.held:g} MPa",
-            "isometric": f"{100 * self.held:g} %",
-            "isotonic": f"{self.held:g} N",
-        }[self.group]
+        held = PathKind(self.group).held.text(self.held)
         variant = "" if self.variant == "default" else f" {self.variant}"
         return f"{self.muscle} {self.model}{variant} {self.group} {held}"
 
@@ -122,7 +117,9 @@ class _Wish:
         self.scenes.add(scene)
 
     def planned(self) -> PlannedCase:
-        path = replace(self.case.path, stops=tuple(sorted(self.stops)), zero_force=self.zero_force)
+        path = self.case.path
+        stops = path.stops if path.kind.by_way else tuple(sorted(self.stops))
+        path = replace(path, stops=stops, zero_force=self.zero_force)
         case = replace(self.case, path=path, fields_at=tuple(sorted(self.fields_at)))
         return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)))
 
@@ -245,7 +242,7 @@ def _case(study: Study, name: str, scene: Scene, place: Place, variant: Variant)
             "kind": scene.path,
             "held": place.held,
             "stops": scene.swept,
-            "zero_force": has_zero and bool(ZERO_FORCE.intersection(scene.quantities)),
+            "zero_force": has_zero and bool(ZERO_FORCE.keys() & set(scene.quantities)),
         },
         {"held": HELD_KEY[scene.path], "stops": SWEPT_KEY[scene.path]},
     )
@@ -304,5 +301,6 @@ def _check_mesh(study: Study, place: Place, variant: Variant) -> None:
 
 def _identity(case: Case) -> str:
     """What a case has in common with all that can be merged with it."""
-    path = LoadPath(kind=case.path.kind, held=case.path.held, stops=(0.0,))
+    stops = case.path.stops if case.path.kind.by_way else (0.0,)
+    path = LoadPath(kind=case.path.kind, held=case.path.held, stops=stops)
     return replace(case, path=path, fields_at=()).canonical()

@@ -9,7 +9,7 @@ from typing import Any
 from geometry.muscle import Braid, Muscle
 from geometry.refusal import Refusal
 from solver import net
-from solver.load_path import LoadPath
+from solver.load_path import ZERO_FORCE, LoadPath
 from workflow.study import figure_needs, units
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError, choices, shown
@@ -24,7 +24,6 @@ from workflow.study.schema import (
 )
 from workflow.study.source import Keys, Source
 
-ONLY_ON = {"threshold_pressure": "isometric", "free_contraction": "isobaric"}  # quantity: path
 HIGHEST = 20.0  # MPa: no pressure of such a muscle
 MOST_CURVES = 10_000  # of a scene: more is a typing error in a grid
 SHORTEST, LONGEST = 0.02, 1e4  # length / inner diameter
@@ -73,7 +72,7 @@ def _as_written(value: Any) -> Any:
 
 def _quantity(asked: Scene, quantity: str) -> str:
     """What is allowed in place of a quantity that cannot be had; empty if it can."""
-    path = ONLY_ON.get(quantity, asked.path)
+    path = ZERO_FORCE.get(quantity, asked.path)
     if path != asked.path:
         return f"this quantity only on an {path} path"
     for model in asked.models or ():

@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from geometry.refusal import is_count
 from solver.effects import EFFECTS, Effects
-from solver.load_path import PathKind
+from solver.load_path import ZERO_FORCE, PathKind
 from solver.models import MODELS
 from solver.numerics import KINDS
 from workflow.study.errors import choices, shown
@@ -38,15 +38,14 @@ ASKED = (  # those from stress on are solved for or written only when asked for
     "deformed_shape",
 )
 FITTED = tuple(m for m in MODELS if MODELS[m].mesh and not MODELS[m].only_for)  # not too dear
-OF_ZERO_FORCE = ("threshold_pressure", "free_contraction")  # on an isometric, an isobaric path
 QUANTITIES = {  # models that can give it
     **{name: tuple(m for m in MODELS if name in MODELS[m].quantities) for name in ASKED},
-    **{name: tuple(MODELS) for name in OF_ZERO_FORCE},
+    **{name: tuple(MODELS) for name in ZERO_FORCE},
 }
 FORCE_MAPS = ("festo_musclesim", "martens2017")  # read by workflow/data/reference.py
 MOST_THREADS = 10_000  # more is a typing error
-HELD_KEY = {"isobaric": "pressure", "isometric": "contraction", "isotonic": "load"}
-SWEPT_KEY = {"isobaric": "contraction", "isometric": "pressure", "isotonic": "pressure"}
+HELD_KEY = {kind.value: kind.held.key for kind in PathKind}
+SWEPT_KEY = {kind.value: kind.swept.key for kind in PathKind}
 
 
 def refusal(allowed: str) -> PydanticCustomError:
