@@ -13,6 +13,7 @@ from typing import Any
 
 from geometry.muscle import Muscle
 from geometry.refusal import build
+from solver import rubber
 from solver.effects import (
     Effects,
     End,
@@ -26,13 +27,13 @@ from solver.effects import (
     switches,
 )
 from solver.load_path import LoadPath
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
 from solver.models import MODELS
 from solver.numerics import KINDS, Numerics
 from solver.refusal import UnsolvableCase
+from solver.rubber.rubber_law import RubberLaw
 
 INCOMPRESSIBLE = {"kappa": 1e300}
-ANY_RUBBER = {"c10": 1, "c01": 0} | INCOMPRESSIBLE
 ANY_THREAD = {"stiffness": 1}
 ANY_MUSCLE = {"wall_thickness": 1e9, "length": 1.0}
 
@@ -53,7 +54,7 @@ class Case:
     """
 
     muscle: Muscle
-    rubber: MooneyRivlin
+    rubber: RubberLaw
     thread: Thread | None
     path: LoadPath
     model: str
@@ -97,7 +98,7 @@ class Case:
             read = switches(self.model, braided=braided)
             values["effects"] = {name: getattr(self.effects, name) for name in read}
         if "rubber" in parts and self.effects.rubber is Rubber.ELASTIC:
-            values["rubber"] = asdict(self.rubber)
+            values["rubber"] = self.rubber.as_dict()
             if not self.compressible:
                 del values["rubber"]["kappa"]
         if "thread" in parts and braided and self.effects.stretch is Stretch.ELASTIC:
@@ -182,8 +183,9 @@ class Case:
         muscle = Muscle.from_dict(given.get("muscle"))
         parts: dict[str, Any] = {
             name: build(kind, given.get(name), UnsolvableCase, name)
-            for name, kind in (("rubber", MooneyRivlin), ("path", LoadPath), ("effects", Effects))
+            for name, kind in (("path", LoadPath), ("effects", Effects))
         }
+        parts["rubber"] = rubber.from_dict(given.get("rubber"))
         if muscle.braid is None:
             parts["thread"] = None
         else:
@@ -223,7 +225,7 @@ def _filled(values: object) -> dict[str, Any]:
     given: dict[str, Any] = {"effects": {}, "numerics": {}, "fields_at": ()} | dict(values)
     effects = given["effects"] if isinstance(given["effects"], Mapping) else {}
     if "rubber" not in model.parts or effects.get("rubber") == Rubber.NONE:
-        given = {"rubber": ANY_RUBBER} | given
+        given = {"rubber": rubber.anything() | INCOMPRESSIBLE} | given
     if "thread" not in model.parts or effects.get("stretch") == Stretch.RIGID:
         given = {"thread": ANY_THREAD} | given
     keeps_volume = not model.compressible or effects.get("volume") == Volume.INCOMPRESSIBLE

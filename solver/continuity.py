@@ -37,7 +37,7 @@ def check_state(case: Case, stop: int, row: dict[str, float]) -> None:
     asked = {path.kind.held: path.held}
     if stop < len(path.stops):
         asked[path.kind.swept] = path.stops[stop]
-    modulus = case.rubber.c10 + case.rubber.c01
+    modulus = case.rubber.load_scale
     sizes = {
         Control.CONTRACTION: 1.0,
         Control.PRESSURE: modulus,

@@ -131,7 +131,7 @@ class Effect:
 
 
 EFFECTS = {  # with what each adds to the energy
-    "rubber": Effect(  # C10 (I1 - 3) + C01 (I2 - 3) of the wall
+    "rubber": Effect(  # that of its law in the wall
         switch="rubber",
         off=(Rubber.NONE,),
     ),

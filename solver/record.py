@@ -281,7 +281,8 @@ def parameters(case: Case) -> dict[str, tuple[Any, dict[str, str]]]:
                 walk(getattr(part, name), value, f"{place}{name}/")
             elif _is_numeric(value):
                 unit = units.get(name) or declared[name]["unit"]
-                relative = {key: declared[name][key] for key in declared[name] if key != "unit"}
+                said = declared[name].items()
+                relative = {k: v for k, v in said if isinstance(v, str) and k != "unit"}
                 found[place + name] = value, {"units": unit, **relative}
             elif value is not None:
                 found[place + name] = value, {}

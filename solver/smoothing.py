@@ -19,11 +19,11 @@ MARGIN = 0.8  # of the width that is named: what smoothing adds is not quite in 
 
 
 def scale(case: Case, solution: Solution) -> float:
-    """The larger of the curve's largest |F| and of C10 + C01 times the wall's area [N]."""
+    """The larger of the curve's largest |F| and of mu0 / 2 times the wall's area [N]."""
     muscle = case.muscle
     area = math.pi * (muscle.outer_radius**2 - muscle.inner_radius**2)
     force = np.abs(solution.states["force"])
-    return max(float(np.nanmax(force, initial=0.0)), (case.rubber.c10 + case.rubber.c01) * area)
+    return max(float(np.nanmax(force, initial=0.0)), case.rubber.load_scale * area)
 
 
 def marked(case: Case, solution: Solution) -> Solution:

@@ -18,7 +18,6 @@ from solver.effects import Volume
 from solver.judge import judged
 from solver.load_path import LoadPath, PathKind, Waypoint
 from solver.models import MODELS
-from solver.models.model import Model
 from solver.record import VARIABLES, Solution, unreached
 from solver.smoothing import marked
 from solver.status import CaseStatus, StateStatus, state_status
@@ -186,7 +185,7 @@ def _follow(
         (work / "waypoints.txt").write_text(waypoint_text(case, way))
         given = flags(case, mesh.resolve())
         try:
-            usage = _run_until(until, limits, MODELS[case.model], given, work, log.resolve())
+            usage = _run_until(until, limits, case, given, work, log.resolve())
         except freefem.OutOfTime:
             status, reason = CaseStatus.TIMEOUT, f"stopped after {limits.wall_time:g} s, the limit"
         except freefem.Outside:
@@ -216,7 +215,7 @@ def _follow(
 def _run_until(
     until: float,
     limits: freefem.Limits,
-    model: Model,
+    case: Case,
     given: dict[str, str | float],
     work: Path,
     log: Path,
@@ -225,7 +224,7 @@ def _run_until(
 
     def run() -> freefem.Usage:
         left = replace(limits, wall_time=max(until - time.monotonic(), 0))
-        return freefem.run(model.program, given, work, log, left, model.includes)
+        return freefem.run(MODELS[case.model].program, given, work, log, left, includes(case))
 
     try:
         return run()
@@ -256,6 +255,11 @@ def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solut
         state_status=[StateStatus.NOT_REACHED] * count,
         log=log,
     )
+
+
+def includes(case: Case) -> list[Path]:
+    """Folders in which the program of a case finds its includes."""
+    return [*MODELS[case.model].includes, *case.rubber.includes()]
 
 
 def composition(case: Case) -> str:
@@ -293,8 +297,7 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
         "inner_radius": muscle.inner_radius,
         "outer_radius": muscle.outer_radius,
         "half_length": muscle.length / 2,
-        "c10": case.rubber.c10,
-        "c01": case.rubber.c01,
+        **case.rubber.flags(),
         "newton_tolerance": newton.tolerance,
         "newton_limit": newton.iterations,
         "smallest_step": newton.smallest_step,

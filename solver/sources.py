@@ -51,7 +51,8 @@ def of_solve(model: str) -> list[str]:
     if own.mesh is not None:
         files.update(of_mesh(own.mesh))
     if own.solve is None:
-        programs = (p for folder in own.includes for p in folder.glob("*.[ei]dp"))
+        laws = (ROOT / "solver/rubber").iterdir()
+        programs = (p for folder in (*own.includes, *laws) for p in folder.glob("*.[ei]dp"))
         files.update(path.relative_to(ROOT).as_posix() for path in programs)
     return sorted(files)
 

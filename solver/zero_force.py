@@ -63,12 +63,12 @@ class Search:
 
 
 def limit_pressure(case: Case) -> float:
-    """What the rubber alone can bear at its initial length, 2 (C10 + C01) ln(R_o / R_i) [MPa]."""
+    """What the rubber alone can bear at its initial length, mu0 ln(R_o / R_i) [MPa]."""
     muscle = case.muscle
     if case.effects.rubber is Rubber.NONE:
         return case.path.stops[-1]
     ratio = muscle.outer_radius / muscle.inner_radius
-    return 2 * (case.rubber.c10 + case.rubber.c01) * math.log(ratio)
+    return case.rubber.shear_modulus * math.log(ratio)
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,11 @@ from geometry.muscle import Braid, Muscle
 from solver import freefem
 from solver.case import Case, digest
 from solver.load_path import LoadPath, Waypoint
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
 from solver.models import MODELS
 from solver.record import Solution
-from solver.solve import composition, flags, solve, waypoint_text
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
+from solver.solve import composition, flags, includes, solve, waypoint_text
 
 LIMITS = freefem.Limits(wall_time=300, memory=4000)  # a busy machine takes its time
 Rows = list[dict[str, float]]
@@ -129,7 +130,7 @@ def run_program(
         assert mesh is not None
         try:
             given = flags(case, mesh) | more
-            freefem.run(program, given, work, work / "log", LIMITS, model.includes)
+            freefem.run(program, given, work, work / "log", LIMITS, includes(case))
         except freefem.FreeFemError as error:
             raise AssertionError(f"{error}\n{freefem.tail(work / 'log')}") from error
         return work

@@ -76,6 +76,6 @@ class Model:
 
     @property
     def includes(self) -> list[Path]:
-        """Folders in which its program finds its includes."""
-        shared = ("models", "path", "threads", "rubber/mooney_rivlin")
+        """Folders in which its program finds its includes, but those of the rubber's law."""
+        shared = ("models", "path", "threads")
         return [FOLDER / self.name, *(SOLVER / name for name in shared)]

@@ -10,9 +10,9 @@ from geometry.refusal import Refusal
 from solver.case import Case
 from solver.effects import CHOICES, Effects
 from solver.load_path import LoadPath
-from solver.material import MooneyRivlin
 from solver.models import MODELS as DESCRIPTORS
 from solver.refusal import UnsolvableCase
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 
 MODELS = tuple(DESCRIPTORS)
 MESHED = ("membrane", "solid", "cell")

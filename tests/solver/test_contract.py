@@ -12,10 +12,12 @@ from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import Control, Waypoint
 from solver.models import MODELS
 from solver.record import VARIABLES
-from solver.solve import composition, flags
+from solver.rubber import default
+from solver.solve import composition, flags, includes
 
 SOLVER = Path(solve.__file__).parent
-FILES = {path.name: path for path in SOLVER.rglob("*.?dp")}
+SHARED = [path for path in SOLVER.rglob("*.?dp") if SOLVER / "rubber" not in path.parents]
+FILES = {path.name: path for path in [*SHARED, *default().includes()[0].glob("*.idp")]}
 REQUIRED = re.compile(r'^[^/\n]*require(?:Real|Int|String)\("-(\w+)"\)', re.M)
 INCLUDE = re.compile(r'^\s*include\s+"([\w.]+)"', re.M)
 MESHED = tuple(name for name, model in MODELS.items() if model.mesh)
@@ -40,7 +42,7 @@ EFFECTS = [
 
 def test_no_two_files_have_one_name():
     """Includes are found by their name alone, in several folders."""
-    assert len(FILES) == len(list(SOLVER.rglob("*.?dp")))
+    assert len(FILES) == len(SHARED) + len(list(default().includes()[0].glob("*.idp")))
 
 
 @pytest.mark.parametrize(("model", "effects"), EFFECTS)
@@ -63,7 +65,7 @@ def test_every_effect_has_its_include(make_case, model, effects):
     expected += solid if model == "solid" else []
     expected += [f"cell_layers_{effects.layers}.idp"] if model == "cell" else []
     assert files == expected
-    assert all(any((folder / file).exists() for folder in MODELS[model].includes) for file in files)
+    assert all(any((folder / file).exists() for folder in includes(case)) for file in files)
 
 
 def test_integers_and_decimals_keep_their_kind(make_case, tmp_path):

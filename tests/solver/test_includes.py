@@ -16,10 +16,14 @@ import pytest
 from solver import solve
 from solver.effects import KINDS
 from solver.models import MODELS
+from solver.rubber import LAWS, default
+from solver.rubber.rubber_law import BY_INVARIANTS
 
 TESTS = Path(__file__).parent / "edp"
 SOLVER = Path(solve.__file__).parent
-FILES = {path.name: path.read_text(encoding="utf-8") for path in sorted(SOLVER.rglob("*.[ei]dp"))}
+LAW = default().includes()[0]  # the others are held to what its includes define
+PATHS = [p for p in sorted(SOLVER.rglob("*.[ei]dp")) if (SOLVER / "rubber") not in p.parents]
+FILES = {path.name: path.read_text(encoding="utf-8") for path in [*PATHS, *LAW.glob("*.idp")]}
 USERS = FILES | {path.name: path.read_text(encoding="utf-8") for path in TESTS.glob("*.??p")}
 INCLUDES = [name for name in FILES if name.endswith(".idp")]
 PREFIXES = tuple(f"{name}_" for name, model in MODELS.items() if model.mesh)
@@ -141,7 +145,12 @@ def defined_by(file: str) -> set[str]:
 
 def said(file: str) -> tuple[set[str], set[str]]:
     """What the head of a file names."""
-    head = re.match(r"(//.*\n)*", FILES[file])[0]
+    return heads_of(FILES[file], file)
+
+
+def heads_of(text: str, file: str) -> tuple[set[str], set[str]]:
+    """What the head of a text names."""
+    head = re.match(r"(//.*\n)*", text)[0]
     found = re.search(r"^// Needs:(.*)^// Defines:(.*)\Z", head, re.MULTILINE | re.DOTALL)
     assert found, f"{file}: its head ends without '// Needs:' and '// Defines:'"
     lists = (re.sub(r"^//", "", text, flags=re.MULTILINE).split() for text in found.groups())
@@ -155,6 +164,28 @@ def test_the_head_says_what_a_file_needs_and_defines(file):
     lists = (" ".join(sorted(words)) or "nothing" for words in (needs, defines))
     right = "// Needs:   {}\n// Defines: {}".format(*lists)
     assert said(file) == (needs, defines), f"{file}: its head should end with\n{right}"
+
+
+FRAMES = ("biaxial.idp", "axisymmetric.idp", "periodic.idp")
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_every_law_has_the_frames_and_these_define_the_same(law):
+    for frame in FRAMES:
+        file = next(p / frame for p in LAWS[law].includes() if (p / frame).is_file())
+        text = file.read_text(encoding="utf-8")
+        assert heads_of(text, str(file))[1] == said(frame)[1]
+        assert heads_of(text, str(file))[0] == said(frame)[0]
+        for name in said(frame)[1]:
+            assert re.search(rf"^(func|bool)\b.*\b{name}\b", text, re.MULTILINE), name
+
+
+def test_laws_of_invariants_define_what_their_frames_use():
+    wanted = {"invariantSlopes", "invariantModuli", "invariantEnergy"}
+    for frame in BY_INVARIANTS.glob("*.idp"):
+        assert "invariants.idp" in frame.read_text()
+    for file in (SOLVER / "rubber").glob("*/invariants.idp"):
+        assert heads_of(file.read_text(), str(file))[1] == wanted
 
 
 def test_names_are_found():

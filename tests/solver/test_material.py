@@ -4,8 +4,9 @@ import math
 
 import pytest
 
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
 from solver.refusal import UnsolvableCase
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 
 
 def test_shear_modulus(nbr):

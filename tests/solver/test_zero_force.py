@@ -8,7 +8,8 @@ import pytest
 from geometry.muscle import Braid, Muscle
 from solver.effects import Effects
 from solver.load_path import Control, LoadPath
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 from solver.status import CaseStatus, StateStatus
 from solver.zero_force import Finder, Point, Search
 

@@ -7,8 +7,8 @@ from geometry.mesh_settings import SectionMesh
 from geometry.muscle import Muscle
 from solver.effects import Effects, ThreadLaw
 from solver.load_path import LoadPath
-from solver.material import MooneyRivlin
 from solver.numerics import Newton, Numerics
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 
 PATHS = {
     "isobaric": LoadPath(kind="isobaric", held=0.3, stops=(-0.05, 0.0, 0.1, 0.2)),

@@ -11,8 +11,8 @@ import pytest
 from geometry.mesh_settings import CellMesh
 from solver.effects import Effects
 from solver.load_path import LoadPath
-from solver.material import MooneyRivlin
 from solver.numerics import Newton, Numerics
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 
 COARSE = CellMesh(thread_size=1.5, body_size=0.4)
 BARE = CellMesh(body_size=0.5)

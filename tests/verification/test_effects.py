@@ -9,8 +9,9 @@ import pytest
 from geometry.muscle import Muscle
 from solver.effects import Effects
 from solver.load_path import LoadPath
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
 from solver.numerics import Numerics, Slack
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 from solver.solve import composition
 
 STOPS = (0.0, 0.05, 0.1, 0.15, 0.2)

@@ -14,8 +14,8 @@ from geometry.muscle import Muscle
 from solver.case import Case
 from solver.effects import Effects
 from solver.load_path import LoadPath
-from solver.material import MooneyRivlin
 from solver.numerics import Newton, Numerics
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 
 SLIDING = Effects(end="sliding")
 

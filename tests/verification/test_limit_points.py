@@ -15,8 +15,9 @@ from geometry.mesh_settings import SectionMesh
 from geometry.muscle import Braid, Muscle
 from solver.effects import Effects
 from solver.load_path import LoadPath
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
 from solver.numerics import Numerics
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 from solver.status import CaseStatus, StateStatus
 
 C10, C01, INNER, OUTER = 0.345083, 0.083805, 10.0, 12.0

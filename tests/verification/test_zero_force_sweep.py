@@ -10,8 +10,9 @@ import pytest
 
 from geometry.muscle import Braid, Muscle
 from solver.load_path import LoadPath
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
 from solver.numerics import Newton, Numerics
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 from solver.status import StateStatus
 from solver.zero_force import limit_pressure
 

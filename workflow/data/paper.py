@@ -12,7 +12,7 @@ RATIO, AT_RATIO, AT_PRESSURE = 34.5, 0.2, 0.3  # Fig. 11: at that contraction an
 WIDE = 40.0  # mm, inner diameter of the muscle that Fig. 11 compares
 SHAPE = (20.0, 2.0, 300.0)  # mm: inner diameter, wall, length of the normal condition
 BRAID = (144.0, 60, 20.6, 21.8)  # lead [mm], threads, layer diameters [mm]
-RUBBER = (0.345083, 0.083805)  # MPa
+RUBBER = {"c10": 0.345083, "c01": 0.083805}  # MPa
 
 
 def is_normal(studied: StudiedMuscle) -> bool:
@@ -38,14 +38,14 @@ def _is(studied: StudiedMuscle, diameter: float) -> bool:
     wanted = (
         *(diameter, *SHAPE[1:]),
         *(lead * sum(layers) / sum(BRAID[2:]), threads, *layers),
-        *RUBBER,
     )
     found = (
         *(muscle.inner_diameter, muscle.wall_thickness, muscle.length),
         *(muscle.braid.lead, muscle.braid.threads, *muscle.braid.layer_diameters),
-        *(rubber.c10, rubber.c01),
     )
-    return _close(found, wanted)
+    values = rubber.values()
+    same_law = values.keys() == RUBBER.keys()
+    return same_law and _close([*found, *values.values()], [*wanted, *RUBBER.values()])
 
 
 def _close(found: Iterable[float], wanted: Iterable[float]) -> bool:

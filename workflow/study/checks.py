@@ -24,6 +24,7 @@ from workflow.study.schema import (
 )
 from workflow.study.source import Keys, Source
 
+EA = "thread_stiffness"
 HIGHEST = 20.0  # MPa: no pressure of such a muscle
 MOST_CURVES = 10_000  # of a scene: more is a typing error in a grid
 SHORTEST, LONGEST = 0.02, 1e4  # length / inner diameter
@@ -136,8 +137,14 @@ def calibration(study: Study, name: str) -> Iterator[StudyError]:
 def _fitted(
     source: Source, keys: Keys, entry: CalibrationEntry, made: StudiedMuscle
 ) -> Iterator[StudyError]:
-    """Bounds up to which there is no rubber."""
-    high = {key: getattr(entry.bounds, key)[1] for key in entry.fit if key in ("c10", "c01")}
+    """What the rubber does not have, and bounds up to which there is none."""
+    own = [EA, *made.rubber.values()]
+    for key in entry.fit:
+        if key not in own:
+            allowed = f"of this muscle, {choices(key, own)}"
+            yield source.refuse((*keys, "fit"), key, allowed)
+            return
+    high = {key: getattr(entry.bounds, key)[1] for key in entry.fit if key != EA}
     try:
         replace(made.rubber, **high)
     except Refusal as refusal:

@@ -4,8 +4,9 @@ from dataclasses import dataclass, field
 
 from geometry.muscle import Muscle
 from solver.effects import Effects
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
 from solver.numerics import Numerics
+from solver.rubber.rubber_law import RubberLaw
 from workflow.study.limits import Limits
 from workflow.study.schema import CalibrationEntry, Scene
 from workflow.study.source import Source
@@ -17,7 +18,7 @@ class StudiedMuscle:
 
     muscle: Muscle
     material: str
-    rubber: MooneyRivlin
+    rubber: RubberLaw
     thread: Thread | None
     limits: Limits = field(default_factory=Limits)  # of its materials
     reference: tuple[str, ...] = ()  # names of the force maps that are of this muscle

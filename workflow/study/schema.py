@@ -6,10 +6,20 @@ solver/); here stands what a file may contain. config/README.md describes every 
 
 import re
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import fields
-from typing import Annotated, Any, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Union, get_args
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    create_model,
+)
 from pydantic_core import PydanticCustomError
 
 from geometry.refusal import is_count
@@ -17,6 +27,7 @@ from solver.effects import EFFECTS, Effects
 from solver.load_path import ZERO_FORCE, PathKind
 from solver.models import MODELS
 from solver.numerics import KINDS
+from solver.rubber import LAWS, default
 from workflow.study.errors import choices, shown
 from workflow.study.values import POSSIBLE, expand, is_possible
 
@@ -155,12 +166,38 @@ class Entry(BaseModel):
 
 
 class MaterialEntry(Entry):
-    """A rubber."""
+    """A rubber; each law adds its parameters."""
 
-    c10: Number
-    c01: Number
+    law: str
     kappa: Number = 1000.0
     stretch_limit: Number | None = None
+
+
+def _material(law: str) -> type[MaterialEntry]:
+    own = {parameter.name: (Number, ...) for parameter in LAWS[law].parameters()}
+    return create_model(f"Material_{law}", __base__=MaterialEntry, law=(str, law), **own)
+
+
+def law_of(entry: object) -> str | None:
+    """Name of the law of a material as it is written; None if that can be no name."""
+    law = entry.get("law", default().law()) if isinstance(entry, Mapping) else default().law()
+    return law if isinstance(law, str) else None
+
+
+MATERIALS = {law: _material(law) for law in LAWS}
+if TYPE_CHECKING:
+    Material = MaterialEntry
+else:
+    _kinds = tuple(Annotated[entry, Tag(law)] for law, entry in MATERIALS.items())
+    Material = Annotated[Union[_kinds], Discriminator(law_of)]  # noqa: UP007
+BOUNDS = {  # what a calibration can fit, and its bounds: first of the thread, then of rubbers
+    "thread_stiffness": (10.0, 10000.0),  # N
+} | {
+    parameter.name: parameter.bounds
+    for law in LAWS.values()
+    for parameter in law.parameters()
+    if parameter.bounds
+}
 
 
 class MuscleEntry(Entry):
@@ -252,12 +289,14 @@ class Scene(Entry):
         return getattr(self, SWEPT_KEY[self.path])
 
 
-class BoundsEntry(Entry):
-    """Between which values a calibration may go."""
-
-    thread_stiffness: Range = (10.0, 10000.0)  # N
-    c10: Range = (0.01, 2.0)  # MPa
-    c01: Range = (0.001, 1.0)  # MPa
+if TYPE_CHECKING:
+    BoundsEntry = Entry
+else:
+    BoundsEntry = create_model(  # between which values a calibration may go
+        "BoundsEntry",
+        __base__=Entry,
+        **{name: (Range, bounds) for name, bounds in BOUNDS.items()},
+    )
 
 
 class CalibrationEntry(Entry):
@@ -266,7 +305,7 @@ class CalibrationEntry(Entry):
     muscle: Name
     reference: str | None = None  # else the first map of the muscle
     model: _one_of(*FITTED) = "membrane"
-    fit: _some_of("thread_stiffness", "c10", "c01") = ("thread_stiffness",)
+    fit: _some_of(*BOUNDS) = ("thread_stiffness",)
     bounds: BoundsEntry = BoundsEntry()
     fit_pressure: Values = (0.3,)  # MPa
     report_pressure: Values = (0.2, 0.4, 0.6)  # MPa
@@ -275,7 +314,7 @@ class CalibrationEntry(Entry):
 class StudyFile(Entry):
     """The whole file."""
 
-    materials: dict[Name, MaterialEntry]
+    materials: dict[Name, Material]
     muscles: dict[Name, MuscleEntry]
     variants: dict[Name, VariantEntry] = {}
     numerics: NumericsEntry = NumericsEntry()

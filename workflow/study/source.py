@@ -12,7 +12,14 @@ from geometry.refusal import Refusal
 from workflow.study import plain_yaml, units, user_file
 from workflow.study.errors import Findings, StudyError, choices, printable, shown
 from workflow.study.plain_yaml import Node, UnreadableText
-from workflow.study.schema import LONGEST_NAME, NAME_RULE, Entry, StudyFile
+from workflow.study.schema import (
+    LONGEST_NAME,
+    MATERIALS,
+    NAME_RULE,
+    Entry,
+    StudyFile,
+    law_of,
+)
 
 T = TypeVar("T")
 Keys = tuple[str | int, ...]
@@ -64,6 +71,7 @@ class Source:
             except ValidationError as errors:
                 before = len(places), len(unknown)
                 for error in errors.errors(include_url=False):
+                    error["loc"] = _as_written(error["loc"])
                     alone = error["type"] == "extra_forbidden" and len(error["loc"]) == 3
                     to = unknown if alone else places
                     if error["loc"] not in to:
@@ -150,6 +158,13 @@ class Source:
             name = (renamed or {}).get(refusal.field, refusal.field)
             raise self.refuse((*keys, name), refusal.value, refusal.allowed) from None
 
+    def _known_keys(self, keys: Keys) -> list[str]:
+        """Keys that there are at a place of the file."""
+        if keys[:1] == ("materials",) and len(keys) == 2:
+            law = law_of(self.plain["materials"][keys[1]])
+            return list(MATERIALS[str(law)].model_fields)
+        return _schema_keys(keys)
+
     def _without(self, places: list[Keys], unknown: list[Keys]) -> dict[str, Any]:
         """What stands in the file without the entries, or else sections, of these places."""
         left = {
@@ -181,8 +196,11 @@ class Source:
             return StudyError(
                 f"{self.place(keys[:-1])} is no name here\n  allowed: {allowed}", line
             )
+        if error["type"] in ("union_tag_invalid", "union_tag_not_found"):
+            law = self.plain["materials"][keys[-1]]["law"]
+            return self.refuse((*keys, "law"), law, choices(law, list(MATERIALS)))
         if error["type"] in ("extra_forbidden", "invalid_key"):
-            allowed = choices(keys[-1], _known_keys(keys[:-1]))
+            allowed = choices(keys[-1], self._known_keys(keys[:-1]))
             return StudyError(
                 f"{self.place(keys)} is no key here\n  allowed: {allowed}", line, keys
             )
@@ -196,6 +214,12 @@ class Source:
         return self.refuse(keys, error["input"], allowed)
 
 
+def _as_written(keys: Keys) -> Keys:
+    """The place of an error without the law by which the schema of a material was chosen."""
+    chosen = len(keys) > 2 and keys[0] == "materials" and keys[2] in MATERIALS
+    return keys[:2] + keys[3:] if chosen else keys
+
+
 def _without_value(node: Any, keys: Keys = ()) -> Iterator[Keys]:
     if isinstance(node, Mapping):
         for key, value in node.items():
@@ -207,7 +231,7 @@ def _readable(key: str | int) -> str:
     return str(key) if plain else shown(key)
 
 
-def _known_keys(keys: Keys) -> list[str]:
+def _schema_keys(keys: Keys) -> list[str]:
     """Keys that the schema has at a place of the file."""
     schema: Any = StudyFile
     for key in keys:

@@ -14,8 +14,10 @@ from typing import Any, TypeVar
 from geometry.muscle import Braid, Muscle
 from geometry.refusal import Refusal
 from solver.effects import Effects
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
 from solver.numerics import KINDS, Numerics, Spread
+from solver.rubber import LAWS
+from solver.rubber.rubber_law import LEAST_KAPPA, RubberLaw
 from workflow.study import checks, fit, units
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices, shown
@@ -41,7 +43,6 @@ ANGLE_KEYS = ("lead", "angle", "angle_of")  # exactly one of them
 NOT_MEASURED = (*OF_THREAD, "reference")
 # Values beside which another one can be judged alone
 ANY_SHAPE = {"inner_diameter": 1, "wall_thickness": 1, "length": 1, "cap_length": 0, "braid": None}
-ANY_RUBBER = {"c10": 1e-12, "c01": 0, "kappa": 1e12}
 
 
 def study_file(given: Mapping[str, object]) -> str:
@@ -75,7 +76,7 @@ def load(path: Path | str, findings: Findings | None = None) -> Study:
     found = Findings() if findings is None else findings
     source = Source.read(Path(path))
     file = source.validated(found)
-    rubbers: dict[str, MooneyRivlin] = {}
+    rubbers: dict[str, RubberLaw] = {}
     limits: dict[str, Limits] = {}
     for name, material in file.materials.items():
         with found.gathering():
@@ -127,24 +128,29 @@ def _fit(study: Study, name: str) -> CalibrationEntry:
     return entry.model_copy(update={"reference": made.reference[0]})
 
 
-def _rubber(source: Source, found: Findings, name: str, entry: MaterialEntry) -> MooneyRivlin:
+def _rubber(source: Source, found: Findings, name: str, entry: MaterialEntry) -> RubberLaw:
     """The rubber of an entry; a bulk modulus that was left out is not to blame."""
     keys = ("materials", name)
-    values = entry.model_dump(exclude={"stretch_limit"})
+    law, values = LAWS[entry.law], entry.model_dump(exclude={"stretch_limit", "law"})
+    refused = list(law.out_of_range(values))
+    for refusal in refused:
+        found.add(source.refuse((*keys, refusal.field), refusal.value, refusal.allowed))
+    if refused:
+        raise AlreadyRefused
     try:
-        return MooneyRivlin(**values)
+        return law(**values)
     except Refusal as refusal:
-        blamed = refusal.field
-        stiff = [key for key in ("c10", "c01") if units.guess(key, values[key])]
-        if blamed == "kappa" and (stiff or not source.has((*keys, "kappa"))):
-            blamed = stiff[0] if stiff else max(("c10", "c01"), key=values.__getitem__)
+        blamed, allowed = refusal.field, refusal.allowed
+        names = [parameter.name for parameter in law.parameters()]
+        unusual = [key for key in names if units.guess(key, values[key])]
+        if blamed == "kappa" and (unusual or not source.has((*keys, "kappa"))):
+            blamed = unusual[0] if unusual else max(names, key=values.__getitem__)
             kappa = values["kappa"]
-            allowed = f"c10 + c01 up to {kappa / 100:g} MPa at a kappa of {kappa:g} MPa"
-            raise source.refuse((*keys, blamed), values[blamed], allowed) from None
-        for key in ("c10", "c01"):
-            with found.gathering():
-                source.checked(keys, MooneyRivlin, ANY_RUBBER | {key: values[key]})
-        raise source.refuse((*keys, blamed), refusal.value, refusal.allowed) from None
+            allowed = (
+                f"an initial shear modulus up to {kappa / LEAST_KAPPA:g} MPa "
+                f"at a kappa of {kappa:g} MPa"
+            )
+        raise source.refuse((*keys, blamed), values[blamed], allowed) from None
 
 
 class _Muscles:
@@ -158,7 +164,7 @@ class _Muscles:
         source: Source,
         findings: Findings,
         entries: Mapping[str, MuscleEntry],
-        rubbers: Mapping[str, MooneyRivlin],
+        rubbers: Mapping[str, RubberLaw],
         limits: Mapping[str, Limits],
         modulus: float,
     ) -> None:
@@ -249,7 +255,7 @@ class _Muscles:
             **made,
         )
 
-    def _rubber(self, name: str, values: dict[str, Any]) -> MooneyRivlin:
+    def _rubber(self, name: str, values: dict[str, Any]) -> RubberLaw:
         material = values["material"]
         if material not in self.rubbers:
             if material in self.source.names("materials"):

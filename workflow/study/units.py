@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from solver.rubber import LAWS
 from workflow.study.values import is_possible
 
 LENGTHS = {"m": 1e3, "um": 1e-3}  # in mm
@@ -34,9 +35,13 @@ class Usual:
 
 
 PRESSURE = Usual("MPa", 0.05, 1.2, STRESSES | {"bar": 0.1, "psi": 0.00689476})
-USUAL = {
-    "c10": Usual("MPa", 1e-3, 10, STRESSES | {"GPa": 1e3}),
-    "c01": Usual("MPa", 0, 10, STRESSES),
+OF_RUBBER = {
+    parameter.name: Usual("MPa", *parameter.usual, STRESSES | {"GPa": 1e3})
+    for law in LAWS.values()
+    for parameter in law.parameters()
+    if parameter.unit == "MPa"
+}
+USUAL = OF_RUBBER | {
     "kappa": Usual("MPa", 10, 1e5, STRESSES | {"GPa": 1e3}),
     "inner_diameter": Usual("mm", 0.1, 500, LENGTHS),
     "wall_thickness": Usual("mm", 0.005, 100, LENGTHS),

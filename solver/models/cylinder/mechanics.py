@@ -1,9 +1,9 @@
 """Energy, pressure, force and torque of a uniform cylinder, with the effects of a case.
 
 Incompressible wall: a point R goes to r(R)^2 = r^2 + (R^2 - R_0^2) / lz, with r and R_0 of the
-surface on which the pressure acts, and turns by tau Z. In squared stretches A = lt^2, B = lz^2:
+surface on which the pressure acts, and turns by tau Z. The law of the rubber
+(solver/rubber) takes the squared stretches A = lt^2, B = lz^2 and the shear (R tau)^2; a thread has
 
-    I1 = A + B + 1/(A B) + A (R tau)^2,   I2 = 1/A + 1/B + A B + (R tau)^2 / B
     lf^2 = B cos^2 + A (sin + or - R tau cos)^2     + for the inner layer, - for the outer
 
 The energy per reference length psi(r, lz, tau) gives p = psi_r / (2 pi r lz), F = psi_lz - p pi r^2
@@ -60,7 +60,7 @@ class Cylinder:
             self.measure = 0 * self.measure
             self.modulus = 1.0
         else:
-            self.modulus = case.rubber.c10 + case.rubber.c01
+            self.modulus = case.rubber.load_scale
         lead = muscle.braid.lead if muscle.braid else 1.0
         self.angles = np.arctan(2 * math.pi * self.layers / lead)
         self.senses = np.array([1.0, -1.0])[: len(self.layers)]
@@ -101,10 +101,7 @@ class Cylinder:
         """Strain energy per reference length [N mm/mm]."""
         a, b = self._hoop(self.radii, state.r, state.lz) ** 2, state.lz**2
         shear = (self.radii * state.twist) ** 2
-        i1 = a + b + 1 / (a * b) + a * shear
-        i2 = 1 / a + 1 / b + a * b + shear / b
-        rubber = self.case.rubber
-        total = float(np.sum(self.measure * (rubber.c10 * (i1 - 3) + rubber.c01 * (i2 - 3))))
+        total = float(np.sum(self.measure * self.case.rubber.energy(a, b, shear)))
         if len(self.layers) and not self.rigid:
             braid, thread, width = self._threads()
             share = thread_law.energy(self.case.effects.threads, width, self.thread_stretch(state))
@@ -125,12 +122,11 @@ class Cylinder:
         self, r: float, lz: float, twist: float, *, threads: bool
     ) -> tuple[float, float, float]:
         """Derivatives of psi by r, lz and tau."""
-        c10, c01 = self.case.rubber.c10, self.case.rubber.c01
         a, b = self._hoop(self.radii, r, lz) ** 2, lz**2
         radii, shear = self.radii, (self.radii * twist) ** 2
-        by_a = self.measure * (c10 * (1 - 1 / (a**2 * b) + shear) + c01 * (b - 1 / a**2))
-        by_b = self.measure * (c10 * (1 - 1 / (a * b**2)) + c01 * (a - (1 + shear) / b**2))
-        torque = np.sum(self.measure * 2 * radii**2 * twist * (c10 * a + c01 / b))
+        by_a, by_b, by_shear = self.case.rubber.slopes(a, b, shear)
+        torque = np.sum(self.measure * 2 * radii**2 * twist * by_shear)
+        by_a, by_b = self.measure * by_a, self.measure * by_b
         if threads and len(self.layers):
             axial, hoop = self._along_threads(r, lz, twist)
             per_square = self._tension(np.hypot(axial, hoop))

@@ -10,7 +10,8 @@ from geometry.muscle import Braid, Muscle
 from solver import net, record
 from solver.case import Case
 from solver.load_path import LoadPath
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 from solver.status import StateStatus
 from workflow.data.records import Curve
 from workflow.data.states import SceneData, Table

@@ -23,7 +23,6 @@ from geometry.muscle import Muscle
 from solver.case import Case
 from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import LoadPath, PathKind
-from solver.material import MooneyRivlin
 from solver.numerics import Newton, Numerics
 from workflow.analyses.accuracy.settings import (
     BUTT_FAMILY,
@@ -146,7 +145,7 @@ def _tube(study: Study) -> Iterator[AnalysisCase]:
         setting = _Setting("tube", "solid", f"1/{m}", numerics, effects, refinement=m)
         case = Case(
             muscle=tube,
-            rubber=MooneyRivlin(c10=nbr.c10, c01=nbr.c01, kappa=2e6 * (nbr.c10 + nbr.c01)),
+            rubber=replace(nbr, kappa=1e6 * nbr.shear_modulus),
             thread=None,
             path=LoadPath(kind=PathKind.ISOMETRIC, held=0.2, stops=(0.05,)),
             model="solid",

@@ -29,7 +29,6 @@ from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
 from workflow.study.schema import CalibrationEntry
 
-UNITS = {"thread_stiffness": "N", "c10": "MPa", "c01": "MPa"}
 THREAD_MODULUS = 2100.0  # MPa, section 2.2 of the paper
 CHECK = "solid"
 
@@ -87,13 +86,10 @@ def calibrate(study: Study, name: str) -> Calibration:
 
 def _parameters(entry: CalibrationEntry, muscle: StudiedMuscle) -> list[Parameter]:
     assert muscle.thread is not None  # the check of a study refuses a bare tube
-    start = {
-        "thread_stiffness": muscle.thread.stiffness,
-        "c10": muscle.rubber.c10,
-        "c01": muscle.rubber.c01,
-    }
+    start = {"thread_stiffness": muscle.thread.stiffness} | muscle.rubber.values()
+    units = {"thread_stiffness": "N"} | {p.name: p.unit for p in muscle.rubber.parameters()}
     return [
-        Parameter(key, UNITS[key], start[key], *getattr(entry.bounds, key)) for key in entry.fit
+        Parameter(key, units[key], start[key], *getattr(entry.bounds, key)) for key in entry.fit
     ]
 
 

@@ -34,13 +34,13 @@ def text(study: Study, name: str, values: Mapping[str, float]) -> str:
         f"{entry.model}.",
         "# Paste the lines below each heading under the same heading of a study file.",
     ]
-    rubber = {"c10": base.rubber.c10, "c01": base.rubber.c01} | dict(values)
-    if set(values) & {"c10", "c01"}:
+    fitted = {key: value for key, value in values.items() if key in base.rubber.values()}
+    if fitted:
         own += f", material: {name}"
         lines.append("materials:")
-        lines.append(
-            f"  {name}: {{c10: {rubber['c10']:g}, c01: {rubber['c01']:g}, "
-            f"kappa: {base.rubber.kappa:g}}}"
-        )
+        law = "" if base.rubber.unnamed else f"law: {base.rubber.law()}, "
+        found = base.rubber.values() | fitted | {"kappa": base.rubber.kappa}
+        said = ", ".join(f"{key}: {value:g}" for key, value in found.items())
+        lines.append(f"  {name}: {{{law}{said}}}")
     lines += ["muscles:", f"  {name}: {{{own}}}"]
     return "\n".join(lines) + "\n"

@@ -24,7 +24,7 @@ DATA = ("geometry/*.py", "solver/**/*.py", "solver/**/*.[ei]dp")
 
 
 def changed(muscle: StudiedMuscle, values: Mapping[str, float]) -> StudiedMuscle:
-    """The muscle with other values of ``thread_stiffness`` [N], ``c10``, ``c01`` [MPa]."""
+    """The muscle with other values of ``thread_stiffness`` [N] and parameters of its rubber."""
     rubber = {key: value for key, value in values.items() if key != "thread_stiffness"}
     thread = values.get("thread_stiffness")
     return replace(

@@ -15,12 +15,13 @@ from scipy.stats import qmc
 
 from geometry.mesh_settings import MeridianMesh, SectionMesh
 from geometry.muscle import Braid, Muscle
-from solver import net
+from solver import net, rubber
 from solver.case import Case
 from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import LoadPath, PathKind
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
 from solver.numerics import Numerics
+from solver.rubber.rubber_law import RubberLaw
 from workflow.analyses.analysis import AnalysisCase
 from workflow.study.contents import Study
 
@@ -69,7 +70,7 @@ class _Hard:
 
     pressure: float = PRESSURE
     muscle: Muscle | None = None
-    rubber: MooneyRivlin | None = None
+    rubber: RubberLaw | None = None
     stiffness: float | None = None
     effects: Effects = field(default_factory=Effects)
 
@@ -99,8 +100,8 @@ def _hard_cases(study: Study) -> dict[str, _Hard]:
     for stiffness in (20.0, 2e3, 2e4, 2e5):
         hard[f"EA {stiffness:g} N"] = _Hard(stiffness=stiffness)
     for ratio in (1e2, 1e3, 1e5):
-        rubber = replace(nbr, kappa=ratio * nbr.shear_modulus)
-        hard[f"kappa/mu {ratio:g}"] = _Hard(rubber=rubber)
+        softer = replace(nbr, kappa=ratio * nbr.shear_modulus)
+        hard[f"kappa/mu {ratio:g}"] = _Hard(rubber=softer)
     hard |= {
         f"L {length:g} mm": _Hard(muscle=replace(base, length=length)) for length in (60, 1000)
     }
@@ -184,7 +185,7 @@ def _sample(point: np.ndarray) -> Case | None:
     path = _path(muscle, v["pressure"], v["path"])
     return Case(
         muscle=muscle,
-        rubber=MooneyRivlin(c10=v["c10"], c01=v["c01"] * v["c10"]),
+        rubber=rubber.from_dict({"c10": v["c10"], "c01": v["c01"] * v["c10"]}),
         thread=Thread(stiffness=v["stiffness"]),
         path=path,
         model="solid",

@@ -123,7 +123,7 @@ def _cube(ax: Any, cube: pd.DataFrame) -> None:
             fillstyle="none" if status == "converged" else "full",
             **STATUS.get(str(status), OTHER),
         )
-    ax.set(xscale="log", yscale="log", ylabel="p / (C10 + C01)")
+    ax.set(xscale="log", yscale="log", ylabel="2 p / shear modulus")
     ax.set_xlabel("p D² / (threads × EA), a thread strain")
     ax.set_ylim(bottom=cube["pressure by modulus"].min() / 20)  # room for the legend
     ax.set_title(f"hypercube, {len(cube)} muscles")

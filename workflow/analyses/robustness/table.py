@@ -97,7 +97,7 @@ def _row(entry: Solved) -> dict[str, Any]:
     assert case.thread is not None
     reached = np.isfinite(states["force"])
     count = max(int(reached.sum()), 1)
-    modulus = case.rubber.c10 + case.rubber.c01
+    modulus = case.rubber.load_scale
     pressure = max(case.path.stops) if case.path.kind != "isobaric" else case.path.held
     return {
         **entry.asked.tags,

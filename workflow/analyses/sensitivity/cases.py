@@ -53,8 +53,7 @@ class Normal:
             "inner_layer": inner / 2,  # mm, radius
             "outer_layer": outer / 2,
             "thread_stiffness": thread.stiffness,
-            "c10": muscle.rubber.c10,
-            "c01": muscle.rubber.c01,
+            **muscle.rubber.values(),
             "nbr": 1.0,
         }
         return cls(muscle, study.muscles[OTHER], braid, point)
@@ -80,12 +79,9 @@ class Normal:
             wall_thickness=p["wall_thickness"],
             braid=replace(self.braid, lead=lead, layer_diameters=layers),
         )
-        soft, share = self.soft.rubber, p["nbr"]
-        rubber = replace(
-            self.muscle.rubber,
-            c10=share * p["c10"] + (1 - share) * soft.c10,
-            c01=share * p["c01"] + (1 - share) * soft.c01,
-        )
+        soft, share = self.soft.rubber.values(), p["nbr"]
+        mixed = {name: share * p[name] + (1 - share) * soft[name] for name in soft}
+        rubber = replace(self.muscle.rubber, **mixed)
         thread = Thread(stiffness=p["thread_stiffness"])
         held = {
             PathKind.ISOBARIC: (p["pressure"], p["contraction"]),

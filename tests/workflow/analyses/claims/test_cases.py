@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solver.material import MooneyRivlin, Thread
+from solver.material import Thread
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
 from workflow.analyses.claims import cases
 from workflow.analyses.claims.stress import summary
 from workflow.plan.plan import plan

@@ -1,0 +1,22 @@
+"""Mooney-Rivlin: W = C10 (I1 - 3) + C01 (I2 - 3)."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from solver.rubber.rubber_law import InvariantLaw, parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class MooneyRivlin(InvariantLaw):
+    """The law of the paper, and of a rubber that names none."""
+
+    c10: float = parameter(unit="MPa", symbol="C10", usual=(1e-3, 10), bounds=(0.01, 2.0), above=0)
+    c01: float = parameter(unit="MPa", symbol="C01", usual=(0, 10), bounds=(0.001, 1.0), least=0)
+    unnamed: ClassVar[bool] = True
+
+    def by_invariants(self, i1: Any, i2: Any) -> tuple[Any, Any, Any]:
+        """Energy and its derivatives W1, W2 by the invariants [MPa]."""
+        return self.c10 * (i1 - 3) + self.c01 * (i2 - 3), self.c10, self.c01
+
+
+LAW = MooneyRivlin

@@ -1,0 +1,195 @@
+"""What the rest asks of a law of rubber: one dataclass each, in ``solver/rubber/<law>/law.py``.
+
+Beside it stand the includes of the FreeFEM programs, one for each frame in which a wall is
+described: ``biaxial.idp``, ``axisymmetric.idp``, ``periodic.idp``. A law that is a function of the
+invariants I1 and I2 needs one include only, ``invariants.idp``; the frames of
+``solver/rubber/by_invariants`` make the rest of it.
+"""
+
+import inspect
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.refusal import is_number
+from solver.material import MPA
+from solver.refusal import UnsolvableCase
+
+Array = NDArray[np.float64]
+BY_INVARIANTS = Path(__file__).parent / "by_invariants"
+LEAST_KAPPA = 50.0  # shear moduli
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """What is known of a parameter of a law beside its value.
+
+    Attributes
+    ----------
+    symbol : as figures write it
+    usual : values between which it lies in practice, widely
+    bounds : between which a calibration may go; without them it is not fitted
+    above, least : values that it must exceed, or not fall below
+    """
+
+    name: str = ""
+    unit: str
+    symbol: str
+    usual: tuple[float, float]
+    bounds: tuple[float, float] | None = None
+    above: float = -math.inf
+    least: float = -math.inf
+
+    @property
+    def allowed(self) -> str:
+        """Its range in words."""
+        limit = f" > {self.above:g}" if self.above > -math.inf else ""
+        limit += f" >= {self.least:g}" if self.least > -math.inf else ""
+        return f"a finite number{limit} ({self.unit})"
+
+    def allows(self, value: object) -> bool:
+        """Whether a value is in its range."""
+        return is_number(value) and float(value) > self.above and float(value) >= self.least  # type: ignore[arg-type]
+
+
+def parameter(**known: Any) -> Any:
+    """A field for a parameter of a law, with what ``Parameter`` says of it."""
+    found = Parameter(**known)
+    return field(metadata={"unit": found.unit, "parameter": found})
+
+
+@dataclass(frozen=True, kw_only=True)
+class RubberLaw(ABC):
+    """A rubber, nearly incompressible where a model resolves that.
+
+    Squared stretches of a surface in the wall are A (hoop) and B (axial), the shear is
+    s = (R tau)^2, and the stretch through the wall follows from incompressibility.
+
+    Raises
+    ------
+    UnsolvableCase
+        If a parameter is out of its range, the initial shear modulus not positive, or the bulk
+        modulus too small for what is nearly incompressible.
+    """
+
+    kappa: float = field(default=1000.0, metadata=MPA)  # bulk modulus
+    unnamed: ClassVar[bool] = False  # True: of a rubber that names no law
+
+    def __post_init__(self) -> None:
+        for refusal in self.out_of_range(vars(self)):
+            raise refusal
+        if not self.shear_modulus > 0:
+            last = self.parameters()[-1].name
+            allowed = f"parameters whose initial shear modulus, {self.shear_modulus:g} MPa, is > 0"
+            raise UnsolvableCase(last, getattr(self, last), allowed)
+        if not (is_number(self.kappa) and self.kappa >= LEAST_KAPPA * self.shear_modulus):
+            raise UnsolvableCase(
+                "kappa",
+                self.kappa,
+                f"at least {LEAST_KAPPA:g} shear moduli, {LEAST_KAPPA * self.shear_modulus:g} MPa: "
+                "rubber is nearly incompressible, and the other models take it as incompressible",
+            )
+
+    @classmethod
+    def law(cls) -> str:
+        """Name of the law: that of its folder."""
+        return cls.__module__.split(".")[-2]
+
+    @classmethod
+    def parameters(cls) -> list[Parameter]:
+        """All that it has beside the bulk modulus."""
+        own = (f for f in fields(cls) if "parameter" in f.metadata)
+        return [replace(f.metadata["parameter"], name=f.name) for f in own]
+
+    @classmethod
+    def out_of_range(cls, values: Mapping[str, Any]) -> Iterator[UnsolvableCase]:
+        """Parameters that are out of their range, each by itself."""
+        for each in cls.parameters():
+            if not each.allows(values[each.name]):
+                yield UnsolvableCase(each.name, values[each.name], each.allowed)
+
+    @classmethod
+    def includes(cls) -> list[Path]:
+        """Folders with the includes of the frames; what the law has itself goes first."""
+        return [Path(inspect.getfile(cls)).parent, BY_INVARIANTS]
+
+    def values(self) -> dict[str, float]:
+        """Its parameters by name."""
+        return {each.name: getattr(self, each.name) for each in self.parameters()}
+
+    def flags(self) -> dict[str, float]:
+        """What the programs are told of it."""
+        known = {"shear_modulus": self.shear_modulus, "initial_slope": self.initial_slope}
+        return known | self.values()
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values; without the name of the law if that is understood."""
+        named = {} if self.unnamed else {"law": self.law()}
+        return named | asdict(self)
+
+    @property
+    @abstractmethod
+    def shear_modulus(self) -> float:
+        """Of small strains, mu0 [MPa]."""
+
+    @property
+    def load_scale(self) -> float:
+        """Half the shear modulus, against which pressures are judged [MPa]."""
+        return self.shear_modulus / 2
+
+    @property
+    @abstractmethod
+    def initial_slope(self) -> float:
+        """Of the energy by each principal stretch at rest; - this ln J takes it off [MPa]."""
+
+    @abstractmethod
+    def energy(self, a: Array, b: float, shear: Array) -> Array:
+        """Energy per reference volume [MPa]."""
+
+    @abstractmethod
+    def slopes(self, a: Array, b: float, shear: Array) -> tuple[Array, Array, Array]:
+        """Derivatives of the energy by A, B and s [MPa]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class InvariantLaw(RubberLaw):
+    """A law W(I1, I2)."""
+
+    @abstractmethod
+    def by_invariants(self, i1: Any, i2: Any) -> tuple[Any, Any, Any]:
+        """Energy and its derivatives W1, W2 by the invariants [MPa]."""
+
+    @property
+    def shear_modulus(self) -> float:
+        """2 (W1 + W2) at rest [MPa]."""
+        _, w1, w2 = self.by_invariants(3.0, 3.0)
+        return 2 * (float(w1) + float(w2))
+
+    @property
+    def initial_slope(self) -> float:
+        """2 W1 + 4 W2 at rest [MPa]."""
+        _, w1, w2 = self.by_invariants(3.0, 3.0)
+        return 2 * float(w1) + 4 * float(w2)
+
+    def energy(self, a: Array, b: float, shear: Array) -> Array:
+        """Energy per reference volume [MPa]."""
+        return np.asarray(self.by_invariants(*_invariants(a, b, shear))[0])
+
+    def slopes(self, a: Array, b: float, shear: Array) -> tuple[Array, Array, Array]:
+        """Derivatives of the energy by A, B and s [MPa]."""
+        _, w1, w2 = self.by_invariants(*_invariants(a, b, shear))
+        by_a = w1 * (1 - 1 / (a**2 * b) + shear) + w2 * (b - 1 / a**2)
+        by_b = w1 * (1 - 1 / (a * b**2)) + w2 * (a - (1 + shear) / b**2)
+        return by_a, by_b, w1 * a + w2 / b
+
+
+def _invariants(a: Array, b: float, shear: Array) -> tuple[Array, Array]:
+    i1 = a + b + 1 / (a * b) + a * shear
+    i2 = 1 / a + 1 / b + a * b + shear / b
+    return i1, i2
