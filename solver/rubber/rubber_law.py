@@ -12,7 +12,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,7 +79,7 @@ class RubberLaw(ABC):
     """
 
     kappa: float = field(default=1000.0, metadata=MPA)  # bulk modulus
-    unnamed: ClassVar[bool] = False  # True: of a rubber that names no law
+    unnamed = False  # True: of a rubber that names no law
 
     def __post_init__(self) -> None:
         for refusal in self.out_of_range(vars(self)):

@@ -1,7 +1,7 @@
 """Mooney-Rivlin: W = C10 (I1 - 3) + C01 (I2 - 3)."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from solver.rubber.rubber_law import InvariantLaw, parameter
 
@@ -12,7 +12,7 @@ class MooneyRivlin(InvariantLaw):
 
     c10: float = parameter(unit="MPa", symbol="C10", usual=(1e-3, 10), bounds=(0.01, 2.0), above=0)
     c01: float = parameter(unit="MPa", symbol="C01", usual=(0, 10), bounds=(0.001, 1.0), least=0)
-    unnamed: ClassVar[bool] = True
+    unnamed = True
 
     def by_invariants(self, i1: Any, i2: Any) -> tuple[Any, Any, Any]:
         """Energy and its derivatives W1, W2 by the invariants [MPa]."""
