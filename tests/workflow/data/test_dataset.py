@@ -285,7 +285,10 @@ def test_no_failures_are_a_header(study, tmp_path):
 
 def test_a_limit_point_is_listed_and_no_failure(study, tmp_path):
     table = tmp_path / "failures.csv"
-    table.write_text("label,status,reason\nbare solid isobaric 0.3 MPa,limit_point,at 0.15 MPa\n")
+    table.write_text(
+        "label,status,reason,scenes,analyses\n"
+        "bare solid isobaric 0.3 MPa,limit_point,at 0.15 MPa,fig04,\n"
+    )
     text, failed = failures.report(table)
     assert "limit_point, at 0.15 MPa" in text
     assert not failed
