@@ -138,7 +138,7 @@ def _write(file: Any, case: Case, solution: Solution) -> None:
         layout=LAYOUT,
         key=case.key,
         case=case.canonical(),
-        code=solution.code or code_digest(case.model),
+        code=solution.code or code_digest(case.model, law=case.rubber.law()),
         status=solution.status.value,
         reason=solution.reason,
         log=solution.log,
@@ -253,9 +253,9 @@ def _read_fields(file: Any, declared: Declared) -> dict[int, dict[str, NDArray[n
 
 
 @cache
-def code_digest(*models: str) -> str:
-    """Digest of the sources that decide the results of some models."""
-    files = sorted({file for model in models for file in sources.of_solve(model)})
+def code_digest(*models: str, law: str = "") -> str:
+    """Digest of the sources that decide the results of some models with a law of rubber."""
+    files = sorted({file for model in models for file in sources.of_solve(model, law)})
     return digest("".join(f"{file}\n{(sources.ROOT / file).read_text()}" for file in files))
 
 

@@ -16,6 +16,7 @@ from functools import cache
 from pathlib import Path
 
 from solver.models import MODELS
+from solver.rubber import LAWS, default
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("geometry", "solver", "workflow")
@@ -44,15 +45,20 @@ def of_mesh(kind: str) -> list[str]:
     return sources("geometry.__main__", f"geometry.{kind}")
 
 
-def of_solve(model: str) -> list[str]:
-    """Files that decide the result of a case by a model, those that make its mesh among them."""
-    own = MODELS[model]
-    files = set(sources("solver.__main__", f"solver.models.{model}.model"))
+def of_solve(model: str, law: str = "") -> list[str]:
+    """Files that decide the result of a case by a model with a rubber, its mesh's among them.
+
+    ``law`` is the rubber's; without, the one that materials need not name.
+    """
+    own, law = MODELS[model], law or default().law()
+    own_modules = f"solver.models.{model}.model", f"solver.rubber.{law}.law"
+    files = set(sources("solver.__main__", *own_modules))
+    files.difference_update(f"solver/rubber/{name}/law.py" for name in LAWS if name != law)
     if own.mesh is not None:
         files.update(of_mesh(own.mesh))
     if own.solve is None:
-        laws = (ROOT / "solver/rubber").iterdir()
-        programs = (p for folder in (*own.includes, *laws) for p in folder.glob("*.[ei]dp"))
+        folders = (*own.includes, *LAWS[law].includes())
+        programs = (p for folder in folders for p in folder.glob("*.[ei]dp"))
         files.update(path.relative_to(ROOT).as_posix() for path in programs)
     return sorted(files)
 
@@ -73,7 +79,7 @@ def closure(modules: Iterable[str]) -> set[str]:
 def _imported(module: str) -> tuple[str, ...]:
     """Modules of this project that a module imports, and the packages that it lies in."""
     package = module.rpartition(".")[0]
-    names = set(_names(module)) | ({package} if package else set())
+    names = set(_names(module)) | ({package} if package and _is_module(package) else set())
     return tuple(sorted(names))
 
 

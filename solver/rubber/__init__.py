@@ -53,14 +53,13 @@ def from_dict(values: object) -> RubberLaw:
     UnsolvableCase
         If there is no such law, or its parameters are not right.
     """
-    law = default()
-    if isinstance(values, Mapping) and "law" in values:
-        name = values["law"]
-        if name not in LAWS:
-            raise UnsolvableCase("rubber.law", name, ", ".join(LAWS))
-        law = LAWS[name]
-        values = {key: value for key, value in values.items() if key != "law"}
-    return build(law, values, UnsolvableCase, "rubber")
+    if not (isinstance(values, Mapping) and "law" in values):
+        return build(default(), values, UnsolvableCase, "rubber")
+    name = values["law"]
+    if name not in LAWS:
+        raise UnsolvableCase("rubber.law", name, ", ".join(LAWS))
+    own = {key: value for key, value in values.items() if key != "law"}
+    return build(LAWS[name], own, UnsolvableCase, "rubber")
 
 
 def anything() -> dict[str, Any]:

@@ -5,7 +5,7 @@ For whoever reads results in Python::
     from workflow import data
 
     tree = data.open("results/dataset.nc", muscle="dmsp20")    groups at their labels
-    curve = data.curve("results/dataset.nc", muscle="dmsp20", model="solid", pressure=0.3)
+    curve = data.curve("results/dataset.nc", muscle="dmsp20", model=model, pressure=0.3)
 """
 
 from importlib import import_module

@@ -251,8 +251,10 @@ def fit_titles(figure: Figure) -> None:
             beside = [a.bbox for a in figure.axes if a.bbox.x0 > ax.bbox.x1]
             right = [box.x0 for box in beside if box.y0 < own.y1 < box.y1 + 2 * own.height]
             room = min([*right, figure.bbox.x1]) - own.x0 - own.height / 2
-            while title.get_window_extent().width > room > 0 and title.get_fontsize() > 1:
-                title.set_fontsize(0.95 * title.get_fontsize())  # not in proportion: hinting
+            size = float(title.get_fontsize())
+            while title.get_window_extent().width > room > 0 and size > 1:
+                size *= 0.95  # step by step, for hinting makes a text not quite go with its size
+                title.set_fontsize(size)
 
 
 def save(figure: Figure, path: Path) -> None:

@@ -116,7 +116,14 @@ def spec_of_mesh(wildcards):
 
 def solver_sources(wildcards):
     """Sources that decide the result of a case."""
-    return [of_checkout(file) for file in closure.of_solve(case_of(wildcards.case).case.model)]
+    case = case_of(wildcards.case).case
+    return [of_checkout(file) for file in closure.of_solve(case.model, case.rubber.law())]
+
+
+def code_of(wildcards):
+    """Their digest."""
+    case = case_of(wildcards.case).case
+    return code_digest(case.model, law=case.rubber.law())
 
 
 def figures():

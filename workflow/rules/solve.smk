@@ -24,7 +24,7 @@ rule solve:
         memory=PLAN.study.memory,
     params:
         case=lambda wildcards: case_of(wildcards.case).case.canonical(),
-        code=lambda wildcards: code_digest(case_of(wildcards.case).case.model),
+        code=code_of,
         mesh=lambda wildcards, input: ["--mesh", input.mesh] if input.mesh else [],
     message:
         "Solving {LABEL:{wildcards.case}}"

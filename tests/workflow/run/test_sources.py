@@ -7,7 +7,8 @@ import sys
 import pytest
 
 from solver import sources as module
-from solver.sources import sources
+from solver.rubber import LAWS
+from solver.sources import of_solve, sources
 
 TRACER = """\
 import json, pathlib, sys
@@ -147,3 +148,12 @@ def test_programs_open_nothing_else(project, tmp_path, modules, arguments):
     assert status == 0
     assert len(read) > 5
     assert read - {given[4] if "--caption" in given else ""} <= known
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("model", ["cylinder", "solid"])
+def test_a_solve_has_the_files_of_its_own_law(model, law):
+    rooms = {
+        file.split("/")[2] for file in of_solve(model, law) if file.startswith("solver/rubber/")
+    }
+    assert rooms & set(LAWS) == {law}
