@@ -1,5 +1,6 @@
 """Why a muscle has no mesh stands where that would be; what comes from outside leaves nothing."""
 
+import faulthandler
 import json
 import os
 import resource
@@ -49,6 +50,14 @@ FOREIGN = {
     "missing library": (call(fail, ImportError("no gmsh")), "no gmsh"),
     "interrupted": (call(fail, KeyboardInterrupt()), "KeyboardInterrupt"),
 }
+
+
+@pytest.fixture(autouse=True)
+def quiet():
+    """Crashes that are wanted print no stack."""
+    faulthandler.disable()
+    yield
+    faulthandler.enable()
 
 
 @pytest.mark.parametrize("kind", OWN)

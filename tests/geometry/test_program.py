@@ -64,7 +64,10 @@ def test_reads_a_file(specs, tmp_path):
         ("", "Expecting value"),
         ("[1, 2]", "kind = None is refused"),
         ('{"kind": ["section"]}', "kind = ['section'] is refused"),
-        ('{"kind": "sphere"}', "kind = 'sphere' is refused; allowed: meridian, section"),
+        (
+            '{"kind": "sphere"}',
+            "kind = 'sphere' is refused; allowed: cell, meridian, section, whole",
+        ),
         ('{"kind": "whole"}', "keys = ['kind'] is refused; allowed: exactly ['kind', 'muscle']"),
         ('{"kind": "whole", "muscle": 3}', "muscle = 3 is refused"),
     ],

@@ -357,10 +357,7 @@ def test_curves_that_lie_on_each_other_are_named_and_both_seen(plans, tmp_path):
     table = module("fig10").table(SceneData.read(planned, "fig10", tmp_path))
     figure = module("fig10").draw(table)
     assert "Eq. (1) for 40 mm, 60 threads and 40 mm, 100 threads" in words(figure)
-    dashes = [
-        line._unscaled_dash_pattern
-        for line in figure.axes[0].lines
-        if "_Eq. (1)" in line.get_label()
-    ]
-    offsets = [offset for offset, _ in dashes]
-    assert len(set(offsets)) == 2
+    lines = {line.get_label(): line._unscaled_dash_pattern for line in figure.axes[0].lines}
+    for source in ("_Eq. (1)", "_Eq. (1) at the layers"):
+        offsets = {offset for label, (offset, _) in lines.items() if label.startswith(f"{source},")}
+        assert len(offsets) == 2, source
