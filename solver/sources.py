@@ -40,12 +40,14 @@ def sources(*modules: str) -> list[str]:
     return sorted(found)
 
 
-def of_mesh(kind: str) -> list[str]:
+@cache
+def of_mesh(kind: str) -> tuple[str, ...]:
     """Files that make a kind of mesh, or the whole muscle."""
-    return sources("geometry.__main__", f"geometry.{kind}")
+    return tuple(sources("geometry.__main__", f"geometry.{kind}"))
 
 
-def of_solve(model: str, law: str = "") -> list[str]:
+@cache
+def of_solve(model: str, law: str = "") -> tuple[str, ...]:
     """Files that decide the result of a case by a model with a rubber, its mesh's among them.
 
     ``law`` is the rubber's; without, the one that materials need not name.
@@ -60,7 +62,7 @@ def of_solve(model: str, law: str = "") -> list[str]:
         folders = (*own.includes, *LAWS[law].includes())
         programs = (p for folder in folders for p in folder.glob("*.[ei]dp"))
         files.update(path.relative_to(ROOT).as_posix() for path in programs)
-    return sorted(files)
+    return tuple(sorted(files))
 
 
 def closure(modules: Iterable[str]) -> set[str]:
