@@ -1,6 +1,6 @@
 """The HDF5 record of one solved case: its layout, writing, reading.
 
-Layout, version 4
+Layout, version 5
 -----------------
 (512 bytes)  one line of text: file type, layout, and the SHA-256 of all that follows these bytes,
              in what HDF5 calls the user block; programs that read HDF5 skip it
@@ -42,7 +42,7 @@ from solver.case import Case, digest
 from solver.declared import Declared
 from solver.status import CaseStatus, Flag, StateStatus
 
-FILETYPE, LAYOUT = "muscle-case", 4
+FILETYPE, LAYOUT = "muscle-case", 5
 BLOCK = 512  # bytes before the HDF5 data
 LARGEST = 2**31  # bytes of a record that is read
 PASSPORT = ("filetype", "layout", "key", "case", "code", "status", "reason", "log", "unknowns")
@@ -70,6 +70,7 @@ VARIABLES = {
     "energy": ("N*mm", "strain energy of the muscle"),
     "stiffness": ("N/mm", "dF/dl at fixed pressure"),
     "force_by_pressure": ("N/MPa", "dF/dp at fixed length"),
+    "volume_by_pressure": ("mm^3/MPa", "dV/dp at fixed length"),
     "smoothing": ("N", "force that the smoothing of the slack law adds"),
     "smoothing_rate": ("N", "its derivative by the strain over which threads slacken"),
     "unstable_modes": ("1", "unstable modes at fixed contraction and pressure"),

@@ -11,6 +11,8 @@ from geometry.muscle import Muscle
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.material import Thread
+from solver.models.cylinder.curve import direct, observed
+from solver.models.cylinder.mechanics import Cylinder
 
 EPS = (0.0, 0.05, 0.1, 0.15, 0.2)
 
@@ -153,3 +155,24 @@ def test_a_net_without_rubber_under_a_load(solve, muscle):
     angle = math.atan(2 * math.pi * radius / muscle.braid.lead)
     share = (3 * (lz * math.cos(angle)) ** 2 - 1) / math.sin(angle) ** 2
     np.testing.assert_allclose(pressures * math.pi * radius**2 * share, 200, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    "effects", [Effects(), Effects(twist="free"), Effects(stretch="rigid"), Effects(rubber="none")]
+)
+@pytest.mark.parametrize("pressure", [0.05, 0.3])
+def test_a_state_found_at_once_is_that_of_the_path(solve, make_case, effects, pressure):
+    stops = (-0.04, 0.0, 0.1, 0.2)
+    path = LoadPath(kind="isobaric", held=pressure, stops=stops)
+    walked = solve("isobaric", pressure, *stops, effects=effects)
+    cylinder = Cylinder(make_case(model="cylinder", path=path, effects=effects))
+    for number, contraction in enumerate(stops):
+        found = observed(cylinder, direct(cylinder, pressure, contraction))
+        for name in ("force", "volume", "outer_diameter", "stiffness", "energy"):
+            assert found[name] == pytest.approx(walked[name][number], rel=1e-8, abs=1e-8), name
+
+
+def test_no_radius_holds_a_pressure_that_bursts_the_tube(make_case, bare_tube):
+    cylinder = Cylinder(make_case(model="cylinder", muscle=bare_tube))
+    assert direct(cylinder, 0.05, 0.1) is not None
+    assert direct(cylinder, 5.0, 0.1) is None

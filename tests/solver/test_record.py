@@ -265,8 +265,8 @@ def test_another_layout_is_named(written):
 
 def test_a_record_of_an_older_version_is_refused_by_its_layout(written):
     content = written.read_bytes()
-    written.write_bytes(content.replace(b" layout 4 ", b" layout 3 ", 1))
-    with pytest.raises(NoRecord, match="is a muscle-case layout 3, of another version"):
+    written.write_bytes(content.replace(b" layout 5 ", b" layout 4 ", 1))
+    with pytest.raises(NoRecord, match="is a muscle-case layout 4, of another version"):
         record.read(written)
 
 

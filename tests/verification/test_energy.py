@@ -49,6 +49,11 @@ def test_stiffness_is_the_derivative_of_the_force(states, by_length):
     assert states["stiffness"][3] == pytest.approx(by_length(states["force"]), rel=1e-4)
 
 
+def test_volume_by_length_is_minus_force_by_pressure(states, by_length):
+    """Both are the mixed derivative of Pi."""
+    assert -states["force_by_pressure"][3] == pytest.approx(by_length(states["volume"]), rel=1e-4)
+
+
 def test_all_forces_agree(states):
     """From the motion of the cap, the reaction at the cap and that at mid-length."""
     largest = np.max(np.abs(states["force"]))
@@ -63,3 +68,13 @@ def test_volume_is_the_derivative_of_the_potential_by_pressure(make_case, solve_
     states = solve_case(make_case(model="solid", path=path)).states
     potential = states["energy"] - states["pressure"] * states["volume"]
     assert -(DIFFERENCE @ potential) == pytest.approx(states["volume"][2], rel=1e-5)
+
+
+@pytest.mark.parametrize("model", ["cylinder", "membrane", "solid"])
+def test_derivatives_by_pressure(make_case, solve_case, model):
+    """Those of force and volume at a held length are those of states on both sides."""
+    pressures = tuple(round(0.3 + k * STEP, 6) for k in (-2, -1, 0, 1, 2))
+    path = LoadPath(kind="isometric", held=0.1, stops=pressures)
+    states = solve_case(make_case(model=model, path=path)).states
+    assert states["volume_by_pressure"][2] == pytest.approx(DIFFERENCE @ states["volume"], rel=1e-4)
+    assert states["force_by_pressure"][2] == pytest.approx(DIFFERENCE @ states["force"], rel=1e-4)

@@ -24,6 +24,8 @@ MODEL = Model(
         "inner_diameter",
         "outer_diameter",
         "thread_stretch",
+        "volume",
+        "stiffness",
         "twist",
     ),
     solve=solve,
