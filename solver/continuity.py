@@ -3,11 +3,13 @@
 Newton's method converges on whatever branch it comes to. So a step of the free quantity between
 neighbouring stops is compared with the trapezoid of its recorded derivative (dF/dl on an isobaric
 path, dF/dp on an isometric one, on an isotonic one the contraction by de/dp). Where they differ by
-more than a share of the largest value, the curve is solved once more with stops in between, and
-again: mostly it only bends there. A state that those finer steps reach with another value is taken
-from them. Where the difference stays and the step of the free quantity has not become smaller
-with that of the control, the muscle snaps; what lies behind is of another branch. (A net of rigid
-threads begins with an infinite slope: its steps go with the root of the control's.)
+more than a share of the largest value, the step is done again with stops in between, from the state
+before it, and so are those of its parts that differ still. Mostly the curve only bends there, and
+the finer steps come to the same state. Where they do not, or that state is not known as a whole,
+the curve is solved once more with stops in between, and again. A state that this reaches with
+another value is taken from it. Where the difference stays and the step of the free quantity has not
+become smaller with that of the control, the muscle snaps; what lies behind is of another branch.
+(A net of rigid threads begins with an infinite slope: its steps go with the root of the control's.)
 """
 
 import math
@@ -29,6 +31,8 @@ JUMP = 0.75  # share of a step of the free quantity that stays in a quarter of t
 NEWTON_SLACK = 100.0  # times the tolerance: how far a state may be from its controls
 States = dict[str, NDArray[np.float64]]
 Solved = tuple[States, dict[int, States]]  # states, and fields by state
+Curve = tuple[tuple[float, ...], States]  # by other stops
+Onwards = Callable[[Case, float], States | None]
 
 
 def check_state(case: Case, stop: int, row: dict[str, float]) -> None:
@@ -68,25 +72,38 @@ def free_quantity(
         return x, states["contraction"][:count], -by_pressure / by_contraction
 
 
-def gaps(case: Case, states: States) -> list[int]:
-    """Stops from which to the next one the curve does not follow its derivative."""
+def gaps(case: Case, states: States, largest: float | None = None) -> list[int]:
+    """Stops from which to the next one the curve does not follow its derivative.
+
+    ``largest`` is the largest value of the curve, if that has more stops than these.
+    """
     x, value, slope = free_quantity(case, states)
     if not np.isfinite(value).any():
         return []
+    if largest is None:
+        largest = float(np.nanmax(np.abs(value)))
     trapezoid = np.diff(x) * (slope[1:] + slope[:-1]) / 2
-    off = np.abs(np.diff(value) - trapezoid) > SHARE * np.nanmax(np.abs(value))
+    off = np.abs(np.diff(value) - trapezoid) > SHARE * largest
     return [int(k) for k in np.flatnonzero(off)]
 
 
-def snaps(case: Case, solved: Solved, again: Callable[[Case], Solved]) -> list[tuple[float, float]]:
+def snaps(
+    case: Case,
+    solved: Solved,
+    again: Callable[[Case], Solved],
+    onwards: Onwards = lambda _case, _near: None,
+) -> list[tuple[float, float]]:
     """Where the curve snaps, as intervals of the swept control.
 
-    ``again`` solves a case with more stops. What its finer steps reach with another value is
-    replaced in ``solved``.
+    ``onwards`` solves a case whose stops follow a state of the curve, from that state, if it is
+    known as a whole; ``again`` one with more stops. What these finer steps reach with another value
+    is replaced in ``solved``.
     """
     path = case.path
     reached = np.flatnonzero(np.isfinite(solved[0]["force"][: len(path.stops)]))
     if not reached.size or path.kind.by_way:  # more stops would be another way
+        return []
+    if _only_bends(case, solved[0], onwards):
         return []
     kept = [path.stops[k] for k in reached]  # what has no state is not tried again
     stops, values = path.stops, solved[0]
@@ -115,19 +132,80 @@ def snaps(case: Case, solved: Solved, again: Callable[[Case], Solved]) -> list[t
     ]
 
 
+def _only_bends(case: Case, states: States, onwards: Onwards) -> bool:
+    """Whether finer steps over each gap, from the state before it, show one branch."""
+    stops = case.path.stops
+    largest = float(np.nanmax(np.abs(free_quantity(case, states)[1])))
+    order = [point.stop for point in case.path.ways()[0]]
+    return all(
+        _is_joined(
+            case,
+            (stops[k : k + 2], _part(states, k)),
+            onwards,
+            falls=order.index(k) > order.index(k + 1),
+            largest=largest,
+        )
+        for k in gaps(case, states)
+    )
+
+
+def _is_joined(
+    case: Case,
+    ends: Curve,
+    onwards: Onwards,
+    *,
+    falls: bool,
+    largest: float,
+    rounds: int = ROUNDS,
+) -> bool:
+    """Whether finer steps from one of two neighbouring states come to the other, without a snap."""
+    stops = tuple(map(float, np.linspace(ends[0][0], ends[0][1], BETWEEN + 2)))
+    near, ahead = (stops[-1], stops[:-1]) if falls else (stops[0], stops[1:])
+    found = onwards(_with_stops(case, ahead), near)
+    if found is None or not np.isfinite(found["force"]).all():
+        return False
+    name, far = case.path.kind.follows, 0 if falls else -1
+    if not abs(found[name][far] - ends[1][name][far]) <= SAME * largest:
+        return False
+    states = {
+        name: np.append(found[name], two[-1]) if falls else np.append(two[0], found[name])
+        for name, two in ends[1].items()
+    }
+    off = gaps(_with_stops(case, stops), states, largest)
+    if rounds == 1:
+        finer = stops, states
+        return not any(_jumps(case, stops[k], stops[k + 1], finer, ends) for k in off)
+    return all(
+        _is_joined(
+            case,
+            (stops[k : k + 2], _part(states, k)),
+            onwards,
+            falls=falls,
+            largest=largest,
+            rounds=rounds - 1,
+        )
+        for k in off
+    )
+
+
+def _part(states: States, k: int) -> States:
+    """The states at a stop and the next one."""
+    return {name: values[k : k + 2] for name, values in states.items()}
+
+
 def _jumps(
     case: Case,
     low: float,
     high: float,
-    now: tuple[tuple[float, ...], States],
-    before: tuple[tuple[float, ...], States],
+    now: Curve,
+    before: Curve,
 ) -> bool:
     """Whether nearly all of a step of the round before is in this quarter of its interval."""
     coarse = before[0]
     above = next(stop for stop in coarse if stop >= high)
     below = next(stop for stop in reversed(coarse) if stop <= low)
 
-    def step(a: float, b: float, found: tuple[tuple[float, ...], States]) -> float:
+    def step(a: float, b: float, found: Curve) -> float:
         value = free_quantity(_with_stops(case, found[0]), found[1])[1]
         return float(abs(value[found[0].index(b)] - value[found[0].index(a)]))
 

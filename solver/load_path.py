@@ -231,6 +231,13 @@ class LoadPath:
             ),
         ]
 
+    def way_from(self, near: float) -> list[Waypoint]:
+        """Through all stops from a state of the curve that lies beyond one of their ends."""
+        stops = list(enumerate(self.stops))
+        held, swept = self.kind.held, self.kind.swept
+        nearest_first = stops if near < self.stops[0] else stops[::-1]
+        return [Waypoint(held, self.held, swept, value, stop) for stop, value in nearest_first]
+
     def way_from_above(self, pressure: float) -> list[Waypoint]:
         """On an isometric path: to the held contraction at a pressure above all stops."""
         return [*_pressurise(pressure), *self._contract(pressure)]

@@ -4,7 +4,7 @@ import csv
 import math
 import tempfile
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -55,7 +55,7 @@ def solve(
     solver = _Solver(mesh, log, limits, until)
     solved, end, lost = solver.curve(case)
     if end.status is None:
-        cuts = continuity.snaps(case, solved, lambda finer: solver.curve(finer)[0])
+        cuts = continuity.snaps(case, solved, solver.again, solver.onwards)
         lost |= continuity.behind(case, cuts)
     states, fields = solved
     solution = judged(
@@ -76,6 +76,7 @@ class _Solver:
 
     def __init__(self, mesh: Path, log: Path, limits: freefem.Limits, until: float) -> None:
         self._given = mesh, log, limits, until
+        self._starts: dict[float, bytes] = {}  # by swept control: the whole state before a gap
         self.usage: freefem.Usage | None = None
 
     def curve(self, case: Case) -> tuple[Solved, "_End", set[int]]:
@@ -100,12 +101,37 @@ class _Solver:
                 break
         return (states, fields), replace(end, searched=searched), lost
 
+    def again(self, case: Case) -> Solved:
+        """A curve of more stops."""
+        return self.curve(case)[0]
+
+    def onwards(self, case: Case, near: float) -> States | None:
+        """States of a curve that goes on from one before a gap; None if it does not get there."""
+        start, found = self._starts.get(near), unreached(case.path.states)
+        if start is None:
+            return None
+        end = self._walk(case, case.path.way_from(near), found, {}, start)
+        return found if end.status is None else None
+
+    def _walk(
+        self,
+        case: Case,
+        way: list[Waypoint],
+        states: States,
+        fields: dict[int, States],
+        start: bytes = b"",
+    ) -> "_End":
+        """Follow a way, and keep what it leaves for others."""
+        end = _follow(case, way, *self._given, states, fields, start)
+        if end.usage is not None:
+            self.usage = end.usage if self.usage is None else self.usage + end.usage
+        self._starts |= end.starts
+        return end
+
     def _add(self, case: Case, way: list[Waypoint], solved: Solved, lost: set[int]) -> "_End":
         """Follow a way, and add what it reaches for the first time or better to what is known."""
         found, its_fields = unreached(case.path.states), dict[int, States]()
-        end = _follow(case, way, *self._given, found, its_fields)
-        if end.usage is not None:
-            self.usage = end.usage if self.usage is None else self.usage + end.usage
+        end = self._walk(case, way, found, its_fields)
         states, fields = solved
         name, zero = case.path.kind.swept.variable, len(case.path.stops)
         behind = lost_on(case, way, found)
@@ -165,6 +191,7 @@ class _End:
     usage: freefem.Usage | None
     unknowns: int
     searched: tuple[float, float] | None = None  # where a state of zero force was looked for
+    starts: dict[float, bytes] = field(default_factory=dict)  # start_<waypoint>.txt
 
 
 def _follow(
@@ -176,13 +203,20 @@ def _follow(
     until: float,
     states: dict[str, NDArray[np.float64]],
     fields: dict[int, dict[str, NDArray[np.float64]]],
+    start: bytes = b"",
 ) -> _End:
-    """Run FreeFEM along a way and add what it reaches to ``states`` and ``fields``."""
+    """Run FreeFEM along a way and add what it reaches to ``states`` and ``fields``.
+
+    ``start`` is what another run has left of the state where the way begins, else without load.
+    """
     status, reason, usage, unknowns = None, "", None, 0
+    starts: dict[float, bytes] = {}
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as scratch:
         work = Path(scratch)
         (work / "composition.idp").write_text(composition(case))
-        (work / "waypoints.txt").write_text(waypoint_text(case, way))
+        (work / "waypoints.txt").write_text(waypoint_text(case, way, started=bool(start)))
+        if start:
+            (work / "start.txt").write_bytes(start)
         given = flags(case, mesh.resolve())
         try:
             usage = _run_until(until, limits, case, given, work, log.resolve())
@@ -198,7 +232,9 @@ def _follow(
             if status is None:
                 reason = freefem.readable(ended.decode(errors="replace").strip())
             unknowns = _number(work / "unknowns.txt")
-            _collect(case, way, work, LARGEST_FIELDS * mesh.stat().st_size, states, fields)
+            largest = LARGEST_FIELDS * mesh.stat().st_size
+            _collect(case, way, work, largest, states, fields)
+            starts = _starts(case, way, work, largest)
             searched = _searched(work / "zero.txt")
         except RUBBISH as error:
             status = status or CaseStatus.SOLVER_ERROR
@@ -209,7 +245,7 @@ def _follow(
         if status is CaseStatus.SOLVER_ERROR:
             _check_disk(work.parent)
             _check_mesh(mesh)
-    return _End(status, reason, usage, unknowns, searched)
+    return _End(status, reason, usage, unknowns, searched, starts)
 
 
 def _run_until(
@@ -269,10 +305,10 @@ def composition(case: Case) -> str:
     return "".join(f'include "{name}"\n' for name in files)
 
 
-def waypoint_text(case: Case, way: list[Waypoint]) -> str:
-    """The file that solver/path/output.idp reads."""
+def waypoint_text(case: Case, way: list[Waypoint], *, started: bool = False) -> str:
+    """The file that solver/path/output.idp reads; ``started`` where the way begins at a state."""
     wanted_fields = {k for k, stop in enumerate(case.path.stops) if stop in case.fields_at}
-    lines = [str(len(way)), "0 0 0 0 0 0 0"]
+    lines = [f"{len(way)} {started:d} {continuity.SHARE!r}", "0 0 0 0 0 0 0"]
     if case.path.zero_force:
         search = Search.of(case)
         lines[1] = (
@@ -353,6 +389,17 @@ def _collect(
             states[name][:] = np.nan
     if case.effects.volume is Volume.INCOMPRESSIBLE:
         states["unstable_modes"][:] = np.nan  # solid_incompressible.idp counts none
+
+
+def _starts(case: Case, way: list[Waypoint], work: Path, largest: int) -> dict[float, bytes]:
+    """The whole states that it has left, by their swept control."""
+    found: dict[float, bytes] = {}
+    for number, point in enumerate(way):
+        if point.stop is not None:
+            text = files.read(work / f"start_{number}.txt", largest)
+            if text is not None:
+                found[case.path.stops[point.stop]] = text
+    return found
 
 
 def _number(path: Path) -> int:

@@ -1,6 +1,7 @@
 """States behind lost ones, off their controls or across a snap are never simply converged."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from solver.record import VARIABLES
 from solver.status import CaseStatus, StateStatus
 
 STOPS = (0.0, 0.1, 0.2, 0.25, 0.3)
+LIMITS = Limits(wall_time=300, memory=4000)
 CONVERGED, INVALID = StateStatus.CONVERGED, StateStatus.INVALID_STATE
 
 
@@ -69,17 +71,118 @@ def snaps(case, branch, coarse=None):
     return continuity.snaps(case, solved, again), solved[0], len(asked)
 
 
+def onwards_on(branch, steps):
+    """Goes on from every state of a curve, and notes from where and through which stops."""
+
+    def onwards(finer, near):
+        steps.append((near, finer.path.stops))
+        return states_of(finer, *branch)
+
+    return onwards
+
+
+def refuse(finer):
+    raise AssertionError(f"the whole curve is solved again: {finer.path.stops}")
+
+
+KINK = lambda e: 500 - 4000 * max(e - 0.13, 0), lambda e: -4000.0 * (e > 0.13)
+
+
+def test_a_bend_is_looked_at_from_the_state_before_it(case):
+    """Only there: in quarters of the step, and those of the quarter that bends still."""
+    solved, steps = (states_of(case, *KINK), {}), []
+    assert continuity.snaps(case, solved, refuse, onwards_on(KINK, steps)) == []
+    assert steps[0] == (0.1, pytest.approx((0.125, 0.15, 0.175, 0.2)))
+    assert steps[1] == (0.125, pytest.approx((0.13125, 0.1375, 0.14375, 0.15)))
+
+
+def test_from_the_side_from_which_it_was_reached(make_case):
+    """On an isometric path the pressure falls."""
+    path = LoadPath(kind="isometric", held=0.1, stops=(0.1, 0.2, 0.3))
+    case, steps = make_case(path=path), []
+
+    def states(case):
+        found = states_of(case, lambda p: 4000 * max(p - 0.13, 0), lambda p: 0.0)
+        found["force_by_pressure"] = np.array([4000.0 * (p > 0.13) for p in case.path.stops])
+        return found
+
+    def onwards(finer, near):
+        steps.append((near, finer.path.stops))
+        return states(finer)
+
+    assert continuity.snaps(case, (states(case), {}), refuse, onwards) == []
+    assert steps[0] == (0.2, pytest.approx((0.1, 0.125, 0.15, 0.175)))
+
+
+@pytest.mark.parametrize("lost", ["unknown", "elsewhere", "unreached"])
+def test_a_bend_that_cannot_be_looked_at_so_is_solved_again(case, lost):
+    """The start is not known, or does not lead to the state: nothing is taken for granted."""
+    runs = []
+
+    def again(finer):
+        runs.append(finer)
+        return states_of(finer, *KINK), {}
+
+    def onwards(finer, near):
+        states = states_of(finer, *KINK)
+        states["force"][-1] = {"elsewhere": 0.0, "unreached": math.nan}.get(lost, 0.0)
+        return None if lost == "unknown" else states
+
+    assert continuity.snaps(case, (states_of(case, *KINK), {}), again, onwards) == []
+    assert runs
+
+
+def test_a_snap_is_none_the_less_for_steps_from_the_state_before_it(case):
+    """Their last quarter leads over it, as the step itself did."""
+    snap = lambda e: 500 - 900 * e - 200 * (e > 0.213), lambda e: -900.0
+
+    def again(finer):
+        return states_of(finer, *snap), {}
+
+    ((low, high),) = continuity.snaps(case, again(case), again, onwards_on(snap, []))
+    assert low < 0.213 < high
+
+
+@pytest.mark.parametrize(
+    ("kind", "held", "near", "far"),
+    [("isobaric", 0.3, 0.0, 0.1), ("isometric", 0.1, 0.3, 0.2), ("isotonic", 200.0, 0.2, 0.3)],
+)
+@pytest.mark.parametrize("model", ["membrane", "solid"])
+def test_a_walk_goes_on_from_a_state_that_was_left(
+    make_case, mesh_of, tmp_path, monkeypatch, kind, held, near, far, model
+):
+    """Through a stop in between it comes to the same state; all states are left here."""
+    monkeypatch.setattr(continuity, "SHARE", 0.0)
+    stops = tuple(sorted((near, far)))
+    case = make_case(model=model, path=LoadPath(kind=kind, held=held, stops=stops))
+    solver = solve._Solver(mesh_of(case), tmp_path / "log", LIMITS, math.inf)
+    (states, _), _, _ = solver.curve(case)
+    ahead = tuple(sorted(((near + far) / 2, far)))
+    found = solver.onwards(replace(case, path=replace(case.path, stops=ahead)), near)
+    for name in ("force", "contraction", "volume"):
+        expected = states[name][stops.index(far)]
+        assert found[name][ahead.index(far)] == pytest.approx(expected, rel=1e-7)
+    assert solver.onwards(case, far) is None  # no gap follows it
+
+
+def test_near_stops_leave_nothing(make_case, mesh_of, tmp_path):
+    path = LoadPath(kind="isobaric", held=0.3, stops=tuple(k / 100 for k in range(26)))
+    case = make_case(model="membrane", path=path)
+    solver = solve._Solver(mesh_of(case), tmp_path / "log", LIMITS, math.inf)
+    solver.curve(case)
+    assert not solver._starts
+
+
 def test_what_follows_its_derivative_is_not_solved_again(case):
     assert snaps(case, (lambda e: 500 - 900 * e, lambda e: -900.0))[::2] == ([], 0)
 
 
 def test_a_curve_that_bends_between_far_stops_is_one_branch(case):
     """A kink like that of threads that become taut."""
-    branch = lambda e: 500 - 4000 * max(e - 0.13, 0), lambda e: -4000.0 * (e > 0.13)
-    found, states, runs = snaps(case, branch)
+    found, states, runs = snaps(case, KINK)
     assert found == []
     assert 1 <= runs <= continuity.ROUNDS
-    np.testing.assert_array_equal(states["force"], [branch[0](e) for e in STOPS])
+    np.testing.assert_array_equal(states["force"], [KINK[0](e) for e in STOPS])
 
 
 def test_an_infinite_slope_at_a_stop_is_no_snap(case):
@@ -141,7 +244,7 @@ def curve_by(case, monkeypatch, tmp_path):
     def run(*invalid):
         turns = iter(invalid)
 
-        def follow(case, way, mesh, log, limits, until, states, fields):
+        def follow(case, way, mesh, log, limits, until, states, fields, start):
             bad = next(turns)
             for name, values in states_of(case, lambda e: 500 - 900 * e, lambda e: -900.0).items():
                 states[name][:] = values
@@ -149,8 +252,7 @@ def curve_by(case, monkeypatch, tmp_path):
             return solve._End(None, "", None, 100)
 
         monkeypatch.setattr(solve, "_follow", follow)
-        limits = Limits(wall_time=1, memory=1)
-        solver = solve._Solver(tmp_path / "mesh", tmp_path / "log", limits, 1.0)
+        solver = solve._Solver(tmp_path / "mesh", tmp_path / "log", LIMITS, 1.0)
         (states, _), end, lost = solver.curve(case)
         return judged(case, states, reason=end.reason, lost=lost)
 
