@@ -1,11 +1,16 @@
 """What several tests share: the muscle of the paper and its materials, and solves kept by case.
 
-Without FreeFEM a test that needs it ends with an error that says so; it is not skipped.
+Tests run in several processes (pytest-xdist), file by file. What takes long is made by one of them
+and found by the others in a folder that they share. Without FreeFEM a test that needs it ends with
+an error that says so; it is not skipped.
 """
 
 import csv
+import fcntl
 import json
-from collections.abc import Callable, Sequence
+import pickle
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -21,8 +26,31 @@ from solver.record import Solution
 from solver.rubber.mooney_rivlin.law import MooneyRivlin
 from solver.solve import composition, flags, includes, solve, waypoint_text
 
+LONGEST = ("test_cell.py", "test_faults.py", "test_rules.py")  # begun first, to end with the rest
 LIMITS = freefem.Limits(wall_time=300, memory=4000)  # a busy machine takes its time
 Rows = list[dict[str, float]]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The longest files first."""
+    items.sort(key=lambda item: item.path.name not in LONGEST)
+
+
+@contextmanager
+def alone(path: Path) -> Iterator[None]:
+    """Keeps the other processes from making the same."""
+    with path.with_name(f"{path.name}.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+@pytest.fixture(scope="session")
+def shared(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
+    """A folder of all processes of these tests."""
+    own = tmp_path_factory.getbasetemp()
+    folder = (own.parent if hasattr(request.config, "workerinput") else own) / "shared"
+    folder.mkdir(exist_ok=True)
+    return folder
 
 
 @pytest.fixture(scope="session")
@@ -77,36 +105,37 @@ def make_case(muscle: Muscle, nbr: MooneyRivlin, thread: Thread) -> Callable[...
 
 
 @pytest.fixture(scope="session")
-def mesh_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Case], Path | None]:
+def mesh_of(shared: Path) -> Callable[[Case], Path | None]:
     """The mesh of a case; None for a model without one. Made once for all cases that share it."""
-    folder = tmp_path_factory.mktemp("meshes")
 
     def mesh(case: Case) -> Path | None:
         spec = case.mesh_spec()
         if spec is None:
             return None
-        path = folder / f"{digest(spec)}.{MODELS[case.model].suffix}"
-        if not path.exists():
-            make(json.loads(spec), path)
+        path = shared / f"{digest(spec)}.{MODELS[case.model].suffix}"
+        with alone(path):
+            if not path.exists():
+                make(json.loads(spec), path)
         return path
 
     return mesh
 
 
 @pytest.fixture(scope="session")
-def solve_case(
-    mesh_of: Callable[[Case], Path | None], tmp_path_factory: pytest.TempPathFactory
-) -> Callable[[Case], Solution]:
+def solve_case(mesh_of: Callable[[Case], Path | None], shared: Path) -> Callable[[Case], Solution]:
     """Solves a case as ``python -m solver`` does; one that was solved before is remembered."""
-    folder = tmp_path_factory.mktemp("solves")
     known: dict[str, Solution] = {}
 
     def solution(case: Case) -> Solution:
         if case.key not in known:
-            if case.mesh_spec() is not None:
-                freefem.executable()  # raises: FreeFEM is not there
-            log = folder / f"{case.key}.log"
-            known[case.key], _ = solve(case, mesh_of(case), log, LIMITS)
+            path = shared / f"{case.key}.pickle"
+            with alone(path):
+                if not path.exists():
+                    if case.mesh_spec() is not None:
+                        freefem.executable()  # raises: FreeFEM is not there
+                    solved, _ = solve(case, mesh_of(case), path.with_suffix(".log"), LIMITS)
+                    path.write_bytes(pickle.dumps(solved))
+            known[case.key] = pickle.loads(path.read_bytes())
         return known[case.key]
 
     return solution

@@ -81,9 +81,14 @@ class Project:
 
     def copy(self, folder):
         """A project in the same state, as far as Snakemake can tell."""
-        made = object.__new__(Project)
-        made.folder = folder
         shutil.copytree(self.folder, folder, ignore=shutil.ignore_patterns("__pycache__"))
+        return Project.at(folder)
+
+    @classmethod
+    def at(cls, folder):
+        """A project that was made before."""
+        made = object.__new__(cls)
+        made.folder = folder
         return made
 
     def results(self):
