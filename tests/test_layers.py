@@ -15,6 +15,7 @@ LAYERS = (  # rooms of one layer know nothing of each other
     ("workflow.run", "workflow.data"),
     ("workflow.figures",),
     ("workflow.analyses",),
+    ("workflow.answers",),
     ("workflow.report",),
     ("workflow.programs",),
     ("workflow.__main__",),

@@ -11,8 +11,9 @@ from geometry.muscle import Muscle
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.material import Thread
-from solver.models.cylinder.curve import direct, observed
+from solver.models.cylinder.direct import direct
 from solver.models.cylinder.mechanics import Cylinder
+from solver.models.cylinder.observe import observed
 
 EPS = (0.0, 0.05, 0.1, 0.15, 0.2)
 

@@ -5,19 +5,19 @@ stop for the unknowns (radius, axial stretch, twist; those that the case has) fr
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar, root
+from scipy.optimize import minimize_scalar, root
 
 from solver import continuity
 from solver.case import Case
 from solver.effects import Rubber
 from solver.judge import judged
 from solver.load_path import Control, Waypoint
-from solver.models.cylinder.mechanics import Cylinder, State
+from solver.models.cylinder.mechanics import REACH, Cylinder, State
+from solver.models.cylinder.observe import derivatives, observed, slopes, volume
 from solver.record import Solution, unreached
 from solver.zero_force import Finder, Point, Search
 
@@ -32,8 +32,6 @@ NAMES = {  # of controls, as solver/path/newton.idp writes them
     Control.FORCE: "force [N]",
     Control.VOLUME: "volume [mm3]",
 }
-REACH = 6.0  # r / R_i at which a tube counts as inflating without bound
-WIDER = 1.05  # factor of the radius, in search of the one that holds a pressure
 
 
 def solve(case: Case) -> Solution:
@@ -70,13 +68,8 @@ def _control(cylinder: Cylinder, kind: Control, state: State) -> float:
         Control.CONTRACTION: 1 - state.lz,
         Control.PRESSURE: state.pressure,
         Control.FORCE: state.force,
-        Control.VOLUME: _volume(cylinder, state),
+        Control.VOLUME: volume(cylinder, state),
     }[kind] / _scale(cylinder, kind)
-
-
-def _volume(cylinder: Cylinder, state: State) -> float:
-    """Enclosed [mm3]."""
-    return math.pi * state.r**2 * state.lz * cylinder.case.muscle.length
 
 
 def _scale(cylinder: Cylinder, kind: Control) -> float:
@@ -229,7 +222,7 @@ def _limit(cylinder: Cylinder, kinds: tuple[Control, Control], goal: Array, at: 
 
     last, before = at, None
     for _ in range(ARC_STEPS):
-        rows = _derivatives(lambda x: _values(cylinder, kinds, x), at)
+        rows = derivatives(lambda x: _values(cylinder, kinds, x), at)
         if not np.isfinite(rows).all():
             break
         tangent = np.linalg.svd(rows[held])[2][-1]  # along it the held controls do not change
@@ -261,78 +254,6 @@ def _record(cylinder: Cylinder, states: dict[str, Array], stop: int, at: Array) 
         states[name][stop] = value
 
 
-def observed(cylinder: Cylinder, at: Array) -> dict[str, float]:
-    """What is known of a state, as in VARIABLES of solver/record.py, but the smoothing."""
-    muscle, state = cylinder.case.muscle, cylinder.state(at)
-    slopes = _slopes(cylinder, at)
-    inner, outer = (
-        cylinder.radius_at(radius, state.r, state.lz)
-        for radius in (muscle.inner_radius, muscle.outer_radius)
-    )
-    values = {
-        "contraction": 1 - state.lz,
-        "pressure": state.pressure,
-        "force": state.force,
-        "force_cap": state.force,
-        "force_midplane": state.force,
-        "inner_diameter_inflated": 2 * inner,
-        "outer_diameter": 2 * outer,
-        "twist": state.twist,
-        "torque": state.torque,
-        "volume": _volume(cylinder, state),
-        "energy": cylinder.energy(state) * muscle.length,
-        "min_det_f": 1.0,  # incompressible by construction
-        "min_det_f_nodes": 1.0,
-        "margin": min(state.lz, state.r / cylinder.inner),
-        "stiffness": float(slopes[0, 0]) / muscle.length,
-        "force_by_pressure": float(slopes[0, 1]),
-        "volume_by_pressure": float(slopes[1, 1]),
-    }
-    if cylinder.case.effects.rubber is not Rubber.NONE:
-        values["rubber_stretch_max"] = cylinder.rubber_stretch(state)
-    if muscle.braid is not None:
-        stretch = cylinder.thread_stretch(state)
-        values |= {
-            "thread_stretch_min": float(stretch.min()),
-            "thread_stretch_max": float(stretch.max()),
-        }
-    return values
-
-
-def direct(cylinder: Cylinder, pressure: float, contraction: float) -> Array | None:
-    """The unknowns at a pressure [MPa] and a contraction, found at once and not along a path.
-
-    The wall is blown up from its rest until it holds the pressure: of several such radii it is
-    the smallest. None where there is none within ``REACH``.
-    """
-    lz = 1 - contraction
-    if cylinder.rigid:
-        at = np.array([1 + pressure / cylinder.modulus, lz, *[0.0] * cylinder.free])
-        return at if math.isfinite(cylinder.state(at).force) else None
-
-    def off(share: float) -> float:
-        at = np.array([share, lz, *[0.0] * cylinder.free])
-        return cylinder.state(at).pressure - pressure
-
-    low = 1.0
-    while off(low) > 0:
-        low /= WIDER
-        if low < 1 / REACH:
-            return None
-    high = low * WIDER
-    while not off(high) >= 0:
-        low, high = high, high * WIDER
-        if high > REACH:
-            return None
-    at = np.array([brentq(off, low, high, xtol=1e-15, rtol=1e-14), lz, *[0.0] * cylinder.free])
-    if not cylinder.free:
-        return at
-    kinds = Control.CONTRACTION, Control.PRESSURE
-    goal = np.array([contraction, pressure / _scale(cylinder, Control.PRESSURE), 0.0])
-    found = root(lambda x: _values(cylinder, kinds, x) - goal, at, tol=1e-13)
-    return found.x if np.max(np.abs(found.fun)) < 1e-11 else None
-
-
 def _smoothing(cylinder: Cylinder, at: Array) -> tuple[float, float]:
     """Force that the smoothing of the slack law adds, and its derivative by a narrow width.
 
@@ -357,26 +278,4 @@ def _smoothing(cylinder: Cylinder, at: Array) -> tuple[float, float]:
 
 def _force_slope(cylinder: Cylinder, at: Array, along: Control) -> float:
     """dF/dlz at fixed pressure, or dF/dp at fixed lz; without torque."""
-    return float(_slopes(cylinder, at)[0, 0 if along is Control.CONTRACTION else 1])
-
-
-def _slopes(cylinder: Cylinder, at: Array) -> Array:
-    """Of force and volume (rows) by lz at fixed pressure and by p at fixed lz; without torque."""
-
-    def loads(x: Array) -> Array:
-        state = cylinder.state(x)
-        results = [state.force, _volume(cylinder, state)]
-        return np.array([*results, state.lz, state.pressure] + [state.torque] * cylinder.free)
-
-    found = _derivatives(loads, at)
-    moved = np.eye(len(at))[:, :2]
-    return np.asarray(found[:2] @ np.linalg.solve(found[2:], moved))
-
-
-def _derivatives(values: Callable[[Array], Array], at: Array) -> Array:
-    """Of several values (rows) by every unknown, by central differences."""
-    step = 1e-6
-    columns = [
-        (values(at + shift) - values(at - shift)) / (2 * step) for shift in step * np.eye(len(at))
-    ]
-    return np.array(columns).T
+    return float(slopes(cylinder, at)[0, 0 if along is Control.CONTRACTION else 1])

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from geometry.muscle import Braid
 from solver.case import Case
@@ -25,6 +24,7 @@ from solver.threads import thread_law
 
 Array = NDArray[np.float64]
 WALL_POINTS = 16  # Gauss points through the wall: exact to rounding for any wall that is built
+REACH = 6.0  # r / R_i at which a tube counts as inflating without bound
 SLACKEST = 0.2  # share of the net's radius, far below where a slack wall comes to rest
 
 
@@ -175,6 +175,8 @@ class Cylinder:
         r, slope = self._net(lz)
         push = outward(r)
         if push < 0:  # the wall comes to rest inside the net
+            from scipy.optimize import brentq  # late: it takes half a second to import
+
             within = SLACKEST * r
             r = brentq(outward, within, r, rtol=1e-14) if outward(within) > 0 else math.nan
             push = 0.0

@@ -1,0 +1,181 @@
+"""``muscle ask``: the third of pressure, contraction and force, kept as a record."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from solver import record
+from workflow import answers
+from workflow.__main__ import main
+from workflow.answers.quick import Quick
+from workflow.study.errors import StudyError
+from workflow.study.study import load
+
+ROOT = Path(__file__).parents[3]
+STUDY = ROOT / "config" / "config.yaml"
+SLOW = ["scipy", "pandas", "xarray", "pint", "matplotlib"]
+
+
+@pytest.fixture(scope="module")
+def study():
+    return load(STUDY)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("answers")
+
+
+@pytest.fixture
+def ask(study, folder, monkeypatch):
+    """Questions about the muscle of the paper, in a folder that keeps its records."""
+    monkeypatch.chdir(folder)
+    return lambda muscle="dmsp20", **given: answers.ask(muscle, study=study, **given)
+
+
+@pytest.mark.parametrize("model", ["cylinder", "membrane"])
+def test_the_three_questions_have_one_state(ask, model):
+    first = ask(pressure="2.5bar", contraction="10%", model=model)
+    for given in (
+        {"pressure": "0.25MPa", "force": first.force},
+        {"contraction": "30mm", "force": first.force},
+    ):
+        other = ask(model=model, **given)
+        assert other.pressure == pytest.approx(0.25, abs=1e-6)
+        assert other.contraction == pytest.approx(0.1, abs=1e-6)
+        assert other.force == pytest.approx(first.force, abs=1e-9)
+        for name in ("stiffness", "volume", "outer_diameter", "thread_force", "rubber_stretch"):
+            assert getattr(other, name) == pytest.approx(getattr(first, name), rel=2e-5), name
+
+
+def test_numbers_of_the_muscle_of_the_paper(ask):
+    """200 N hanging, by the membrane."""
+    for pressure, contraction in zip((0.2, 0.3, 0.4), (0.06238, 0.12709, 0.17084), strict=True):
+        found = ask(pressure=pressure, force="200N")
+        assert found.contraction == pytest.approx(contraction, abs=1e-5)
+
+
+def test_an_answer_is_a_record_and_asked_again_solves_nothing(ask):
+    given = {"contraction": "7%", "force": "20kg"}
+    first = ask(**given)
+    assert first.solves > 0
+    case, solution = record.read(Path("results/cases", f"{first.case}.h5"))
+    assert case.key == first.case
+    assert solution.code == record.code_digest("membrane")
+    again = ask(**given)
+    assert again.solves == 0
+    assert again.force == first.force
+    assert again.pressure == first.pressure
+
+
+def test_a_record_of_other_sources_is_solved_again(ask):
+    given = {"pressure": "0.3MPa", "contraction": "11%", "model": "cylinder"}
+    first = ask(**given)
+    path = Path("results/cases", f"{first.case}.h5")
+    path.write_bytes(path.read_bytes()[:-1])
+    assert ask(**given).solves == 1  # damaged
+    case, solution = record.read(path)
+    object.__setattr__(solution, "code", "0" * 16)
+    record.write(path, case, solution)
+    assert ask(**given).solves == 1
+    assert ask(**given).solves == 0
+
+
+def test_its_error_covers_the_more_exact_model(ask):
+    """At a state where the caps matter."""
+    by = {
+        model: ask(pressure="0.3MPa", contraction="10%", model=model)
+        for model in ("cylinder", "membrane", "solid")
+    }
+    for model in ("cylinder", "membrane"):
+        off = abs(by[model].force - by["solid"].force)
+        assert off < by[model].error < 6 * off
+    assert by["solid"].error < by["membrane"].error
+    asked = ask(pressure="0.3MPa", force="200N")
+    off = abs(asked.contraction - ask(pressure="0.3MPa", force="200N", model="solid").contraction)
+    assert off < asked.error < 6 * off
+
+
+def test_a_tolerance_takes_a_model(ask):
+    given = {"pressure": "0.3MPa", "contraction": "10%"}
+    assert ask(**given, tolerance=0.1).model == "cylinder"
+    assert ask(**given, tolerance=0.01).model == "membrane"
+    assert ask(**given, tolerance=0.003).model == "solid"
+
+
+def test_where_a_model_has_no_state_the_next_one_answers(ask):
+    """The membrane ends by overhang at low pressure."""
+    given = {"pressure": "0.05MPa", "contraction": "15%"}
+    found = ask(**given)
+    assert found.model == "solid"
+    assert "membrane finds no such state" in found.notes[0]
+    assert "pushed" in " ".join(found.notes)
+    with pytest.raises(StudyError, match="membrane finds no such state"):
+        ask(**given, model="membrane")
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"pressure": "0.3MPa"}, "two of pressure, contraction and force"),
+        ({}, "nothing is given"),
+        ({"pressure": 0.3, "contraction": 0.1, "force": 5.0}, "two of"),
+        ({"muscle": "dmsp2", "pressure": 0.3, "contraction": 0.1}, "nearest: dmsp20"),
+        ({"pressure": "-1bar", "contraction": "5%"}, "0 to 20 MPa"),
+        ({"pressure": "1bar", "contraction": "80%"}, "contraction 80 %"),
+        ({"contraction": "10%", "force": "-5N"}, "0 N or more"),
+        ({"contraction": "40%", "force": "5N"}, "it gets shorter by 28.2 % at most"),
+        ({"pressure": 0.3, "contraction": 0.1, "model": "membran"}, "nearest: membrane"),
+        ({"pressure": 0.3, "contraction": 0.1, "tolerance": 2.0}, "between 0 and 1"),
+        ({"pressure": 0.3, "contraction": 0.1, "variant": "papers"}, "nearest: paper"),
+    ],
+)
+def test_a_question_that_makes_no_sense_is_answered_with_what_does(ask, given, said):
+    with pytest.raises(StudyError) as refused:
+        ask(**given)
+    assert said in str(refused.value)
+
+
+def test_the_command_prints_text_and_json(folder, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
+    words = ["ask", "dmsp20", "0.3", "MPa", "10%", "--model", "cylinder", "--study", str(STUDY)]
+    assert main(words) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("dmsp20 at 0.3 MPa, 10 %, by cylinder:\n  force")
+    assert "299.1 N  ±" in said
+    assert main([*words, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["force"] == {"value": pytest.approx(299.109, abs=1e-3), "unit": "N"}
+    assert found["solves"] == 0
+    assert main([*words, "--pressure", "1bar"]) == 1
+    assert "there is a pressure already" in capsys.readouterr().err
+
+
+def test_nothing_that_is_slow_to_import_is_imported(folder):
+    """The first answer comes within two seconds: no SciPy, no pandas, no pint."""
+    program = (
+        "import sys; from workflow.__main__ import main; "
+        f"main(['ask', 'dmsp20', '0.3MPa', '9%', '--study', {str(STUDY)!r}]); "
+        f"print([name for name in {SLOW} if name in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", program],
+        cwd=folder,
+        env={"PATH": "/usr/bin:/bin", "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize(("pressure", "contraction"), [(0.1, 0.0), (0.3, 0.1), (0.5, 0.2)])
+def test_the_quick_look_is_its_own_inverse(study, pressure, contraction):
+    quick = Quick(study.muscles["dmsp20"])
+    force = quick.force(pressure, contraction)
+    assert quick.pressure(contraction, force) == pytest.approx(pressure, abs=1e-9)
+    assert quick.contraction(pressure, force) == pytest.approx(contraction, abs=1e-9)
+    assert quick.state(pressure, contraction)["force"] == force

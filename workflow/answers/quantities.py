@@ -1,0 +1,102 @@
+"""Pressures, contractions and forces as people write them: ``2.5bar``, ``12 %``, ``5 kg``.
+
+Values are exact decimals, so that 12 % is 0.12 and a state that was solved before is found again.
+"""
+
+import re
+from decimal import Decimal
+
+from workflow.study import units
+from workflow.study.errors import StudyError, choices, shown
+from workflow.study.values import is_possible
+
+PRESSURE, CONTRACTION, FORCE = "pressure", "contraction", "force"
+KINDS = (PRESSURE, CONTRACTION, FORCE)
+GRAVITY = Decimal("9.80665")  # N/kg: a mass is the load that hangs from a muscle
+UNITS = {  # of each kind, by size; pressures are those above the pressure around the muscle
+    PRESSURE: {
+        "MPa": "1",
+        "N/mm2": "1",
+        "bar": "0.1",
+        "mbar": "1e-4",
+        "kPa": "1e-3",
+        "hPa": "1e-4",
+        "Pa": "1e-6",
+        "psi": "0.006894757293168",
+        "atm": "0.101325",
+    },
+    CONTRACTION: {"%": "0.01"},
+    FORCE: {
+        "N": "1",
+        "kN": "1e3",
+        "mN": "1e-3",
+        "kg": str(GRAVITY),
+        "kgf": str(GRAVITY),
+        "g": str(GRAVITY / 1000),
+        "lb": "4.4482216152605",
+        "lbf": "4.4482216152605",
+    },
+}
+STROKES = {"mm": "1", "cm": "10", "m": "1e3", "in": "25.4"}  # in mm: a contraction by the length
+KIND_OF = {unit: kind for kind, sizes in UNITS.items() for unit in sizes} | dict.fromkeys(
+    STROKES, CONTRACTION
+)
+PLAIN = {PRESSURE: "MPa", CONTRACTION: "1", FORCE: "N"}  # of a number without a unit
+EXAMPLES = {PRESSURE: "0.25MPa or 2.5bar", CONTRACTION: "12% or 36mm", FORCE: "200N or 5kg"}
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+WRITTEN = re.compile(rf"\s*({NUMBER})\s*([^\s\d.,+-][^\s]*)?\s*")
+SPELLED = {"percent": "%", "mpa": "MPa", "kpa": "kPa", "pa": "Pa", "n": "N", "N/mm^2": "N/mm2"}
+
+
+def read(text: str, length: float, kind: str = "") -> tuple[str, float]:
+    """Kind and value (MPa, fraction or N) of a quantity, for a muscle of a length [mm].
+
+    With ``kind`` a number may stand without a unit; without, its unit says what it is.
+
+    Raises
+    ------
+    StudyError
+        If it is none, with what would have been one.
+    """
+    found = WRITTEN.fullmatch(text)
+    number = Decimal(found[1]) if found else Decimal("nan")
+    if found is None or not is_possible(float(number)):
+        comma = "; the decimal sign is a point" if re.search(r"\d,\d", text) else ""
+        raise StudyError(f"{shown(text)} is no quantity\n  allowed: {_examples(kind)}{comma}")
+    unit = SPELLED.get(found[2] or "", found[2] or "")
+    if not unit:
+        if kind:
+            return kind, _plain(kind, float(number), text)
+        raise StudyError(f"{shown(text)} has no unit\n  allowed: {_examples('')}")
+    if unit not in KIND_OF:
+        known = [u for u, k in KIND_OF.items() if k == kind or not kind]
+        raise StudyError(f"{shown(text)}: no such unit\n  allowed: {choices(unit, known)}")
+    if kind and KIND_OF[unit] != kind:
+        raise StudyError(f"{shown(text)} is no {kind}\n  allowed: {_examples(kind)}")
+    if unit in STROKES:
+        return CONTRACTION, float(number * Decimal(STROKES[unit]) / Decimal(str(length)))
+    return KIND_OF[unit], float(number * Decimal(UNITS[KIND_OF[unit]][unit]))
+
+
+def _plain(kind: str, number: float, text: str) -> float:
+    """A number in the unit of a study file, unless it looks like one in another."""
+    guess = units.guess(kind, number)
+    if guess:
+        raise StudyError(f"{kind} {text} has no unit; perhaps {guess}\n  give it with its unit")
+    return number
+
+
+def _examples(kind: str) -> str:
+    """Quantities as they may be written."""
+    return EXAMPLES[kind] if kind else ", ".join(f"{EXAMPLES[k]} ({k})" for k in KINDS)
+
+
+def split(words: list[str]) -> list[str]:
+    """Words of a command line, those of one quantity joined: ``0.25 MPa`` is one."""
+    found: list[str] = []
+    for word in words:
+        if found and re.fullmatch(NUMBER, found[-1]) and word in {*KIND_OF, *SPELLED}:
+            found[-1] += word
+        else:
+            found.append(word)
+    return found

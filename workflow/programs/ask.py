@@ -1,0 +1,54 @@
+"""Answer what a muscle does: of pressure, contraction and force two are given.
+
+As ``muscle ask dmsp20 0.25MPa 12%``, ``muscle ask dmsp20 5kg 30mm``, or with --pressure,
+--contraction and --force. A mass is the load that hangs from the muscle, a length how much shorter
+it gets. The record of the answer is kept in results/cases; asked again, nothing is solved.
+"""
+
+import argparse
+import json
+
+from workflow.answers import quantities
+from workflow.programs import add_study
+from workflow.study.errors import StudyError
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What it is told."""
+    parser.add_argument("muscle", help="its name in the study file")
+    parser.add_argument("quantities", nargs="*", help="two of them, as 0.25MPa 12%% or 2.5bar 20kg")
+    for kind in quantities.KINDS:
+        example = quantities.EXAMPLES[kind].replace("%", "%%")
+        parser.add_argument(f"--{kind}", help=f"as {example}")
+    parser.add_argument("--model", help="what computes it; by default membrane")
+    parser.add_argument(
+        "--tolerance", type=float, help="share by which it may be off: takes a model for that"
+    )
+    parser.add_argument("--variant", default="default", help="effects and numerics of the study")
+    parser.add_argument("--json", action="store_true", help="print the answer as JSON")
+    add_study(parser)
+
+
+def run(given: argparse.Namespace) -> int:
+    """Print the answer."""
+    from workflow.answers.question import as_dict, ask, lines
+    from workflow.study.study import load
+
+    study = load(given.study)
+    asked = {kind: getattr(given, kind) for kind in quantities.KINDS}
+    length = study.muscles[given.muscle].muscle.length if given.muscle in study.muscles else 1.0
+    for text in quantities.split(given.quantities):
+        kind, _ = quantities.read(text, length)
+        if asked[kind] is not None:
+            raise StudyError(f"{text}: there is a {kind} already, {asked[kind]}")
+        asked[kind] = text
+    found = ask(
+        given.muscle,
+        **asked,
+        model=given.model,
+        tolerance=given.tolerance,
+        variant=given.variant,
+        study=study,
+    )
+    print(json.dumps(as_dict(found), indent=2) if given.json else "\n".join(lines(found)))
+    return 0
