@@ -14,10 +14,13 @@ from scipy.optimize import brentq, minimize_scalar
 from geometry.mesh_settings import SectionMesh
 from geometry.muscle import Braid, Muscle
 from solver.effects import Effects
-from solver.load_path import LoadPath
+from solver.load_path import Control, LoadPath, Waypoint
 from solver.material import Thread
+from solver.models.cylinder.curve import _scale, _walk
+from solver.models.cylinder.mechanics import Cylinder
 from solver.numerics import Numerics
 from solver.rubber.mooney_rivlin.law import MooneyRivlin
+from solver.rubber.ogden.law import Ogden
 from solver.status import CaseStatus, StateStatus
 
 C10, C01, INNER, OUTER = 0.345083, 0.083805, 10.0, 12.0
@@ -131,3 +134,76 @@ def test_a_tube_many_times_its_length_is_no_answer(make_case, solve_case, rubber
         good = solution.state_status[k] is StateStatus.CONVERGED
         assert good == (contraction > -0.5)
         assert good or solution.notes[k]
+
+
+# Ogden's rubber of 1972: a true fold at a held length, then a valley; by codes of others.
+BALLOON = Ogden(convention="textbook", mu=(0.63, 0.0012, -0.01), alpha=(1.3, 5.0, -2.0), kappa=1e5)
+FOLD, FOLD_RADIUS = 0.0625854, 20.238
+VALLEY, VALLEY_RADIUS = 0.057235, 37.5
+
+
+@pytest.fixture
+def balloon(make_case, bare_tube):
+    def case(model: str, stops: tuple[float, ...]):
+        return make_case(
+            model=model,
+            muscle=bare_tube,
+            rubber=BALLOON,
+            effects=Effects(end="sliding") if model == "solid" else Effects(),
+            numerics=Numerics(section=SectionMesh(cap_step=5, growth=1, body_step=1)),
+            path=LoadPath(kind="isometric", held=0.0, stops=stops),
+        )
+
+    return case
+
+
+@pytest.mark.parametrize(
+    ("model", "stops"),
+    [
+        ("cylinder", (0.055, 0.0605, 0.065)),
+        ("cylinder", (0.03, 0.2)),
+        ("solid", (0.055, 0.0605, 0.065)),
+    ],
+)
+def test_a_fold_of_ogden_under_pressure(balloon, solve_case, model, stops):
+    """There are states at these pressures behind the valley, three times as wide; none is taken."""
+    solution = solve_case(balloon(model, stops))
+    assert solution.status is CaseStatus.LIMIT_POINT
+    assert solution.reason.startswith("fold of the pressure")
+    assert largest(solution) == pytest.approx(FOLD, rel=1e-4)
+    for pressure, status in zip(stops, solution.state_status, strict=True):
+        reached = StateStatus.CONVERGED if pressure < FOLD else StateStatus.NOT_REACHED
+        assert status is reached
+    assert np.nanmax(solution.states["inner_diameter_inflated"]) / 2 < FOLD_RADIUS
+
+
+RADII_PASSED = (12.0, 16.0, FOLD_RADIUS, 25.0, 30.0, VALLEY_RADIUS, 45.0)
+
+
+def check_passed(pressures: list[float]) -> None:
+    assert max(pressures[:5]) == pressures[2] == pytest.approx(FOLD, rel=5e-6)
+    assert min(pressures[2:]) == pressures[5] == pytest.approx(VALLEY, rel=2e-5)
+
+
+def test_a_fold_is_passed_under_volume_control_by_the_cylinder(balloon):
+    tube = Cylinder(balloon("cylinder", (0.05,)))
+    kinds, at, found = (Control.CONTRACTION, Control.VOLUME), tube.start, []
+    for radius in RADII_PASSED:
+        volume = math.pi * radius**2 * tube.case.muscle.length
+        goal = np.array([0.0, volume / _scale(tube, Control.VOLUME)])
+        at, reached = _walk(tube, kinds, goal, at)
+        assert reached
+        found.append(tube.state(at).pressure)
+    check_passed(found)
+
+
+def test_a_fold_is_passed_under_volume_control_by_the_solid(balloon, walk):
+    case = balloon("solid", (0.05,))
+    length = case.muscle.length
+    way = [
+        Waypoint(Control.CONTRACTION, 0.0, Control.VOLUME, math.pi * radius**2 * length, stop=k)
+        for k, radius in enumerate(RADII_PASSED)
+    ]
+    rows = walk(case, way)
+    assert [row["waypoint"] for row in rows] == list(range(len(way)))
+    check_passed([row["pressure"] for row in rows])
