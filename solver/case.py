@@ -71,6 +71,14 @@ class Case:
         if self.muscle.braid is None and MODELS[self.model].needs_braid:
             raise UnsolvableCase("model", self.model, "another model: Eq. (1) needs a braid")
         check_carried(self.model, self.effects)
+        frame, law = MODELS[self.model].frame, self.rubber
+        if frame and not law.has_frame(frame):
+            able = [m.name for m in MODELS.values() if m.frame != frame and "rubber" in m.parts]
+            allowed = (
+                f"{', '.join(able)}; {self.model} takes laws of the invariants only, and that of "
+                f"the rubber, {law.law()}, needs principal stretches"
+            )
+            raise UnsolvableCase("model", self.model, allowed)
         if self.muscle.braid is None and self.effects.rubber is Rubber.NONE:
             raise UnsolvableCase("rubber", self.effects.rubber, "elastic in a bare tube")
         if not isinstance(self.fields_at, tuple):

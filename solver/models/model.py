@@ -35,6 +35,7 @@ class Model:
     unread : fields of the muscle that it does not read
     switches, effects : of solver/effects.py; the switches that it reads, the effects it carries
     numerics : groups of settings that it reads, beside those of its switches
+    frame : in which its program asks for the law of the rubber (an include of it); none without
     compressible : whether it reads the bulk modulus
     needs_braid : whether it is of no bare tube
     threshold : whether there can be a pressure above none at which it has no force
@@ -57,6 +58,7 @@ class Model:
     switches: tuple[str, ...] = ()
     effects: tuple[str, ...] = ()
     numerics: tuple[str, ...] = ()
+    frame: str = ""
     compressible: bool = False
     needs_braid: bool = False
     threshold: bool = True

@@ -36,32 +36,53 @@ class Parameter:
     usual : values between which it lies in practice, widely
     bounds : between which a calibration may go; without them it is not fitted
     above, least : values that it must exceed, or not fall below
+    most : how many numbers it may be a list of; 0 of a single number
+    words : what it may be, if it is no number
+    default : what it is where it is not given
     """
 
     name: str = ""
-    unit: str
-    symbol: str
-    usual: tuple[float, float]
+    unit: str = ""
+    symbol: str = ""
+    usual: tuple[float, float] = (0, math.inf)
     bounds: tuple[float, float] | None = None
     above: float = -math.inf
     least: float = -math.inf
+    most: int = 0
+    words: tuple[str, ...] = ()
+    default: float | None = None
 
     @property
     def allowed(self) -> str:
         """Its range in words."""
+        if self.words:
+            return f"one of {', '.join(self.words)}"
         limit = f" > {self.above:g}" if self.above > -math.inf else ""
         limit += f" >= {self.least:g}" if self.least > -math.inf else ""
-        return f"a finite number{limit} ({self.unit})"
+        unit = f" ({self.unit})" if self.unit not in ("", "1") else ""
+        numbers = f"a list of 1 to {self.most} finite numbers" if self.most else "a finite number"
+        return f"{numbers}{limit}{unit}"
 
     def allows(self, value: object) -> bool:
         """Whether a value is in its range."""
+        if self.words:
+            return value in self.words
+        if not self.most:
+            return self._is_in_range(value)
+        several = isinstance(value, list | tuple) and 1 <= len(value) <= self.most
+        return several and all(map(self._is_in_range, value))  # type: ignore[call-overload]
+
+    def _is_in_range(self, value: object) -> bool:
         return is_number(value) and float(value) > self.above and float(value) >= self.least  # type: ignore[arg-type]
 
 
 def parameter(**known: Any) -> Any:
     """A field for a parameter of a law, with what ``Parameter`` says of it."""
     found = Parameter(**known)
-    return field(metadata={"unit": found.unit, "parameter": found})
+    metadata = {"unit": found.unit, "parameter": found}
+    if found.default is None:
+        return field(metadata=metadata)
+    return field(default=found.default, metadata=metadata)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,14 +140,25 @@ class RubberLaw(ABC):
         """Folders with the includes of the frames; what the law has itself goes first."""
         return [Path(inspect.getfile(cls)).parent, BY_INVARIANTS]
 
-    def values(self) -> dict[str, float]:
+    @classmethod
+    def has_frame(cls, name: str) -> bool:
+        """Whether there is an include of that frame."""
+        own, shared = cls.includes()
+        by_invariants = (own / "invariants.idp").is_file() and (shared / f"{name}.idp").is_file()
+        return by_invariants or (own / f"{name}.idp").is_file()
+
+    def values(self) -> dict[str, Any]:
         """Its parameters by name."""
         return {each.name: getattr(self, each.name) for each in self.parameters()}
 
     def flags(self) -> dict[str, float]:
         """What the programs are told of it."""
         known = {"shear_modulus": self.shear_modulus, "initial_slope": self.initial_slope}
-        return known | self.values()
+        return known | self.own_flags()
+
+    def own_flags(self) -> dict[str, float]:
+        """What the includes of the law are told."""
+        return self.values()
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values; without the name of the law if that is understood."""
@@ -155,6 +187,10 @@ class RubberLaw(ABC):
     @abstractmethod
     def slopes(self, a: Array, b: float, shear: Array) -> tuple[Array, Array, Array]:
         """Derivatives of the energy by A, B and s [MPa]."""
+
+    def margin(self, a: Array, b: float, shear: Array) -> float:
+        """How far the law reaches yet, 1 at rest and 0 at its end; it has none if it never ends."""
+        return math.inf
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -28,6 +28,7 @@ from solver.load_path import ZERO_FORCE, PathKind
 from solver.models import MODELS
 from solver.numerics import KINDS
 from solver.rubber import LAWS, default
+from solver.rubber.rubber_law import Parameter
 from workflow.study.errors import choices, shown
 from workflow.study.values import POSSIBLE, expand, is_possible
 
@@ -173,8 +174,30 @@ class MaterialEntry(Entry):
     stretch_limit: Number | None = None
 
 
+def _numbers(value: object) -> tuple[object, ...]:
+    """A list of numbers; one number is a list of one."""
+    found = value if isinstance(value, list) else [value]
+    return tuple(_bounded(each) for each in found)
+
+
+Numbers = Annotated[tuple[float, ...], BeforeValidator(_numbers)]
+
+
+def _kind_of(parameter: Parameter) -> Any:
+    """What a parameter of a law is in a file."""
+    if parameter.words:
+        return _one_of(*parameter.words)
+    return Numbers if parameter.most else Number
+
+
 def _material(law: str) -> type[MaterialEntry]:
-    own = {parameter.name: (Number, ...) for parameter in LAWS[law].parameters()}
+    own = {
+        parameter.name: (
+            _kind_of(parameter),
+            ... if parameter.default is None else parameter.default,
+        )
+        for parameter in LAWS[law].parameters()
+    }
     return create_model(f"Material_{law}", __base__=MaterialEntry, law=(str, law), **own)
 
 

@@ -11,6 +11,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 from geometry.muscle import Braid, Muscle
 from geometry.refusal import Refusal
 from solver.effects import Effects
@@ -144,13 +146,19 @@ def _rubber(source: Source, found: Findings, name: str, entry: MaterialEntry) ->
         names = [parameter.name for parameter in law.parameters()]
         unusual = [key for key in names if units.guess(key, values[key])]
         if blamed == "kappa" and (unusual or not source.has((*keys, "kappa"))):
-            blamed = unusual[0] if unusual else max(names, key=values.__getitem__)
+            blamed = unusual[0] if unusual else _stiffest(law, values)
             kappa = values["kappa"]
             allowed = (
                 f"an initial shear modulus up to {kappa / LEAST_KAPPA:g} MPa "
                 f"at a kappa of {kappa:g} MPa"
             )
         raise source.refuse((*keys, blamed), values[blamed], allowed) from None
+
+
+def _stiffest(law: type[RubberLaw], values: Mapping[str, Any]) -> str:
+    """The parameter that has the largest stress."""
+    stress = {p.name: np.max(values[p.name]) for p in law.parameters() if p.unit == "MPa"}
+    return max(stress, key=stress.__getitem__)
 
 
 class _Muscles:

@@ -42,6 +42,7 @@ MODEL = Model(
         "discrete_threads",
     ),
     numerics=("newton", "cell"),
+    frame="periodic",
     compressible=True,
     quantities=(
         "force",

@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.muscle import Braid
-from solver.case import Case
+from solver import rubber
+from solver.case import INCOMPRESSIBLE, Case
 from solver.effects import Rubber, Stretch, Twist, Wall
 from solver.material import Thread
 from solver.threads import thread_law
@@ -50,6 +51,7 @@ class Cylinder:
     def __init__(self, case: Case) -> None:
         self.case = case
         muscle, effects = case.muscle, case.effects
+        self.rubber = case.rubber
         self.free = int(effects.twist is Twist.FREE)  # unknowns of the twist
         self.rigid = effects.stretch is Stretch.RIGID and muscle.braid is not None
         self.layers = np.array(muscle.layer_radii)
@@ -59,6 +61,7 @@ class Cylinder:
         if effects.rubber is Rubber.NONE:
             self.measure = 0 * self.measure
             self.modulus = 1.0
+            self.rubber = rubber.from_dict(rubber.anything() | INCOMPRESSIBLE)
         else:
             self.modulus = case.rubber.load_scale
         lead = muscle.braid.lead if muscle.braid else 1.0
@@ -97,11 +100,16 @@ class Cylinder:
         largest = half + np.sqrt(np.maximum(half**2 - a * b, 0))
         return float(np.sqrt(max(np.max(largest), np.max(1 / (a * b)))))
 
+    def rubber_margin(self, state: State) -> float:
+        """How far the law of the rubber reaches yet, if it ends anywhere."""
+        a, b = self._hoop(self.radii, state.r, state.lz) ** 2, state.lz**2
+        return self.rubber.margin(a, b, (self.radii * state.twist) ** 2)
+
     def energy(self, state: State) -> float:
         """Strain energy per reference length [N mm/mm]."""
         a, b = self._hoop(self.radii, state.r, state.lz) ** 2, state.lz**2
         shear = (self.radii * state.twist) ** 2
-        total = float(np.sum(self.measure * self.case.rubber.energy(a, b, shear)))
+        total = float(np.sum(self.measure * self.rubber.energy(a, b, shear)))
         if len(self.layers) and not self.rigid:
             braid, thread, width = self._threads()
             share = thread_law.energy(self.case.effects.threads, width, self.thread_stretch(state))
@@ -124,7 +132,7 @@ class Cylinder:
         """Derivatives of psi by r, lz and tau."""
         a, b = self._hoop(self.radii, r, lz) ** 2, lz**2
         radii, shear = self.radii, (self.radii * twist) ** 2
-        by_a, by_b, by_shear = self.case.rubber.slopes(a, b, shear)
+        by_a, by_b, by_shear = self.rubber.slopes(a, b, shear)
         torque = np.sum(self.measure * 2 * radii**2 * twist * by_shear)
         by_a, by_b = self.measure * by_a, self.measure * by_b
         if threads and len(self.layers):

@@ -34,7 +34,7 @@ def observed(cylinder: Cylinder, at: Array) -> dict[str, float]:
         "energy": cylinder.energy(state) * muscle.length,
         "min_det_f": 1.0,  # incompressible by construction
         "min_det_f_nodes": 1.0,
-        "margin": min(state.lz, state.r / cylinder.inner),
+        "margin": min(state.lz, state.r / cylinder.inner, cylinder.rubber_margin(state)),
         "stiffness": float(by[0, 0]) / muscle.length,
         "force_by_pressure": float(by[0, 1]),
         "volume_by_pressure": float(by[1, 1]),

@@ -17,6 +17,7 @@ MODEL = Model(
     switches=("threads", "wall"),
     effects=("rubber", "wall_thickness", "thread_stretch", "slackening", "end_caps"),
     numerics=("newton", "meridian"),
+    frame="biaxial",
     quantities=(
         "force",
         "contraction",

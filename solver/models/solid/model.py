@@ -44,6 +44,7 @@ MODEL = Model(
         "compressibility",
     ),
     numerics=("newton", "section"),
+    frame="axisymmetric",
     compressible=True,
     quantities=(
         "force",

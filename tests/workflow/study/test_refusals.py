@@ -681,3 +681,50 @@ def test_braces_and_blanks_in_the_names_of_files(tmp_path):
 def test_no_rule_takes_the_name_of_the_study_for_a_pattern():
     rules = {path.name: path.read_text() for path in (ROOT / "workflow/rules").glob("*.smk")}
     assert [name for name, text in rules.items() if "study=STUDY" in text] == []
+
+
+NBR = "{c10: 0.345083, c01: 0.083805, kappa: 1000}"
+LAWS_WRITTEN = [
+    "{law: mooney_rivlin, c10: 0.345083, c01: 0.083805}",
+    "{law: neo_hooke, c10: 0.43}",
+    "{law: yeoh, c1: 0.4, c2: -0.02, c3: 0.005}",
+    "{law: rivlin, c10: 0.345, c01: 0.084, c11: 0.01, c20: -0.01}",
+    "{law: ogden, convention: textbook, mu: [0.63, 0.0012, -0.01], alpha: [1.3, 5, -2]}",
+    "{law: ogden, convention: abaqus, mu: 0.86, alpha: 2}",
+    "{law: gent, mu: 0.86, jm: 30}",
+    "{law: arruda_boyce, mu: 0.86, lambda_m: 3}",
+]
+WRONG_RUBBERS = [  # what stands there, what is said
+    ("{law: ogden, mu: [1], alpha: [2]}", ["convention", "must be given"]),
+    ("{law: ogden, convention: old, mu: [1], alpha: [2]}", ["convention", "textbook, abaqus"]),
+    ("{law: ogden, convention: abaqus, mu: [1], alpha: [2, 3]}", ["alpha", "as many numbers"]),
+    ("{law: ogden, convention: textbook, mu: [1], alpha: [0]}", ["alpha", "not 0"]),
+    ("{law: ogden, convention: textbook, mu: [1, 1, 1, 1, 1], alpha: [1]}", ["mu", "1 to 4"]),
+    ("{law: ogden, convention: textbook, mu: [-1], alpha: [2]}", ["shear modulus, -1 MPa"]),
+    ("{law: ogden, convention: textbook, mu: [630, 1], alpha: [1.3, 5]}", ["mu", "kPa"]),
+    ("{law: gent, mu: 0.86, jm: 0}", ["jm", "> 0"]),
+    ("{law: arruda_boyce, mu0: 0.86, lambda_m: 3}", ["mu0", "nearest: mu"]),
+    ("{law: rivlin, c01: 0.3}", ["c10", "must be given"]),
+]
+
+
+@pytest.mark.parametrize("entry", LAWS_WRITTEN)
+def test_every_law_can_be_written(tmp_path, entry):
+    models = "[cylinder, membrane, solid]"
+    text = changed(NBR, entry).replace("[membrane, solid]", models).replace(", paper]", "]")
+    assert len(answer(tmp_path, text).cases) == 6
+
+
+@pytest.mark.parametrize(("entry", "said"), WRONG_RUBBERS)
+def test_a_wrong_rubber_is_refused_by_its_key(tmp_path, entry, said):
+    found = refusal(tmp_path, changed(NBR, entry))
+    assert "materials.nbr" in found
+    for each in said:
+        assert each in found
+
+
+def test_the_cell_refuses_ogden(tmp_path):
+    text = changed(NBR, LAWS_WRITTEN[4]).replace("[membrane, solid]", "[cell]")
+    found = refusal(tmp_path, text.replace(", paper]", "]"))
+    assert "scenes.fig04.models" in found
+    assert "principal stretches" in found
