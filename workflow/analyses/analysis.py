@@ -55,10 +55,24 @@ class AnalysisCase:
 
 @dataclass(frozen=True)
 class Solved:
-    """A case of an analysis with its solution."""
+    """A case of an analysis with its record."""
 
     asked: AnalysisCase
     solution: Solution
+
+    @cached_property
+    def states(self) -> "pd.DataFrame":
+        """Its rows of the table of states: of its stops, then that of zero force."""
+        from workflow.data.records import SolvedCase  # late, as every run reads this module
+        from workflow.data.states import state_rows
+
+        case = self.asked.case
+        return state_rows([SolvedCase(case, self.solution, case.path.stops)])
+
+    @property
+    def at_stops(self) -> "pd.DataFrame":
+        """The same without the state of zero force."""
+        return self.states.head(len(self.asked.case.path.stops))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,16 +8,16 @@ largest Fref of the curve. Between its points a map has to be interpolated; thre
 ways show how much a mean depends on that.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from solver.status import StateStatus
-from workflow.data import labelled
+from solver.load_path import PathKind
+from solver.models import MODELS
 from workflow.data.reference import (
     CONTRACTIONS,
     ForceMap,
@@ -25,11 +25,10 @@ from workflow.data.reference import (
     largest_force,
     relative_deviation,
 )
-from workflow.data.states import Table
+from workflow.data.states import GOOD, STOP, Table
 
 RULE = "pchip"  # the interpolation of the rule
 ALL = "all"  # in place of a pressure: the mean over all states of all pressures
-GOOD = StateStatus.CONVERGED.value
 RELATIVE, SHARE = "(F - Fref) / |Fref|", "(F - Fref) / Fmax"
 
 
@@ -92,23 +91,23 @@ def interpolated(found: ForceMap, how: str) -> ForceMap:
     return INTERPOLATIONS[how](found.name, found.label, found.points, found.suspect)
 
 
-def states(found: ForceMap, force: xr.DataArray, status: xr.DataArray) -> pd.DataFrame:
-    """All states of the rule at the pressures of ``force``, dims pressure and contraction.
+def states(found: ForceMap, rows: pd.DataFrame) -> pd.DataFrame:
+    """All states of the rule of some isobaric curves, one for each pressure.
 
-    Columns: pressure, contraction, force, reference, both deviations; NaN where there is none, and
-    ``left_out`` says why.
+    ``rows`` are theirs in the table of states. Columns: pressure, contraction, force, reference,
+    both deviations; NaN where there is none, and ``left_out`` says why.
     """
     frames = []
-    good = status.reindex(contraction=CONTRACTIONS, fill_value="") == GOOD
-    ours = force.reindex(contraction=CONTRACTIONS).where(good)
-    for pressure in force.pressure.values:
+    rows = rows[rows["point"] == STOP]
+    for pressure, curve in rows.groupby("pressure"):
         expected = found.force(CONTRACTIONS, float(pressure))
-        value = ours.sel(pressure=pressure).to_numpy()
+        good = curve[curve["status"] == GOOD].set_index("contraction")
+        value = good["force"].reindex(CONTRACTIONS).to_numpy()
         small = is_small(found, CONTRACTIONS, float(pressure))
         why = np.where(small, "small reference", "")
         why = np.where(np.isfinite(value), why, "not solved")
         why = np.where(np.isfinite(expected), why, "outside the map")
-        rows = {
+        columns = {
             "pressure": pressure,
             "contraction": CONTRACTIONS,
             "force": value,
@@ -117,7 +116,7 @@ def states(found: ForceMap, force: xr.DataArray, status: xr.DataArray) -> pd.Dat
             SHARE: (value - expected) / largest_force(found, float(pressure)),
             "left_out": why,
         }
-        frames.append(pd.DataFrame(rows))
+        frames.append(pd.DataFrame(columns))
     return pd.concat(frames, ignore_index=True)
 
 
@@ -142,47 +141,33 @@ def _largest(values: pd.Series) -> float:
     return float(values.loc[values.abs().idxmax()]) if len(values) else np.nan
 
 
-def table(tree: xr.DataTree, maps: Mapping[str, Mapping[str, ForceMap]]) -> pd.DataFrame:
+def table(found: Table, maps: Mapping[str, Mapping[str, ForceMap]]) -> pd.DataFrame:
     """Deviations of all isobaric curves of the muscles that have ``maps`` of their own.
 
     At each pressure and over all of them.
     """
+    curves = found.curves
+    compared = found.part((curves["path"] == PathKind.ISOBARIC) & curves["muscle"].isin(maps))
     rows = [
-        {**curve, "reference": name, "interpolation": how, "pressure [MPa]": pressure, **values}
-        for curve, force, status in _curves(tree, maps)
-        for name, found in maps[curve["muscle"]].items()
+        {"model": model, "muscle": muscle, "variant": variant, "reference": name}
+        | {"interpolation": how, "pressure [MPa]": pressure, **values}
+        for (muscle, model, variant), of_curves in sorted(
+            compared.joined().groupby(["muscle", "model", "variant"]), key=_order
+        )
+        for name, reference in maps[muscle].items()
         for how in INTERPOLATIONS
-        for pressure, values in _by_pressure(states(interpolated(found, how), force, status))
+        for pressure, values in _by_pressure(states(interpolated(reference, how), of_curves))
     ]
     return pd.DataFrame(rows)
 
 
-def of_table(found: Table, maps: Mapping[str, Mapping[str, ForceMap]]) -> pd.DataFrame:
-    """The same of all states of a study, one muscle after the other."""
-    isobaric = set(found.curves["muscle"][found.curves["path"] == "isobaric"])
-    frames = [
-        table(labelled.tree(found.of_muscles([muscle])), {muscle: maps[muscle]})
-        for muscle in sorted(isobaric & maps.keys())
-    ]
-    return pd.concat(frames, ignore_index=True) if frames else pd.DataFrame()
+def _order(group: tuple[Any, pd.DataFrame]) -> tuple[Any, ...]:
+    """By muscle, model and variant, the default first."""
+    muscle, model, variant = group[0]
+    return muscle, MODELS[model].rank, variant != "default", variant
 
 
 def _by_pressure(rows: pd.DataFrame) -> Iterator[tuple[float | str, dict[str, float]]]:
     for pressure, found in rows.groupby("pressure"):
         yield float(str(pressure)), summary(found)
     yield ALL, summary(rows)
-
-
-def _curves(
-    tree: xr.DataTree, muscles: Iterable[str]
-) -> Iterator[tuple[dict[str, str], xr.DataArray, xr.DataArray]]:
-    """Force and status over pressure and contraction, of every muscle, model and variant."""
-    data = tree["isobaric"].to_dataset()
-    for muscle in sorted(set(muscles) & set(data.muscle.values)):
-        for model in data.model.values:
-            for variant in data.variant.values:
-                one = data.sel(muscle=muscle, model=model, variant=variant)
-                one = one.isel(pressure=np.flatnonzero(one.case.to_numpy() != ""))
-                if one.sizes["pressure"]:
-                    names = {"model": str(model), "muscle": muscle, "variant": str(variant)}
-                    yield names, one.force, one.status

@@ -16,14 +16,24 @@ FOLDER = Path("results/cases")
 
 
 @dataclass(frozen=True)
-class Curve:
-    """A solved case at one of its places, and those of its stops that are wanted there."""
+class SolvedCase:
+    """A case with its record, and those of its stops that are wanted."""
 
-    place: Place
-    key: str
     case: Case
     solution: Solution
     stops: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Curve(SolvedCase):
+    """A solved case at one of its places."""
+
+    place: Place
+
+    @property
+    def key(self) -> str:
+        """Of the case."""
+        return self.case.key
 
 
 def path_of(key: str, folder: Path = FOLDER) -> Path:
@@ -61,7 +71,7 @@ def _curve(
     """A curve, judged by what the materials of its muscle bear."""
     case, solution = solved[key]
     limits = plan.study.muscles[place.muscle].limits
-    return Curve(place, key, case, judged(case, solution, limits), stops)
+    return Curve(case, judged(case, solution, limits), stops, place)
 
 
 def read(

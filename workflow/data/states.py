@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from geometry.muscle import Muscle
 from solver.case import Case
-from solver.load_path import ZERO_FORCE
+from solver.load_path import ZERO_FORCE, PathKind
 from solver.record import VARIABLES, Solution
 from solver.status import CaseStatus, StateStatus
 from workflow.data import records
-from workflow.data.records import Curve
+from workflow.data.records import Curve, SolvedCase
 from workflow.data.reference import ForceMap
 from workflow.plan import mesh_error
 from workflow.plan.plan import Plan
@@ -104,7 +104,7 @@ class Table:
         return cls(
             pd.DataFrame([_of_muscle(muscles[name]) for name in named], named, list(OF_MUSCLE)),
             pd.DataFrame([_of_curve(curve) for curve in curves], columns=list(OF_CURVE)),
-            _of_states(curves),
+            state_rows(curves),
         )
 
     def of_muscles(self, names: Collection[str]) -> "Table":
@@ -116,6 +116,18 @@ class Table:
         curves = self.curves[chosen]
         muscles = self.muscles.loc[sorted(set(curves["muscle"]))]
         return Table(muscles, curves, self.states[self.states["curve"].isin(curves.index)])
+
+    def curve(
+        self, path: str, muscle: str, model: str, variant: str, held: float
+    ) -> pd.DataFrame | None:
+        """The states of one curve; None if it is not there."""
+        return self._by_names.get((path, muscle, model, variant, held))
+
+    @cached_property
+    def _by_names(self) -> Mapping[tuple[str | float, ...], pd.DataFrame]:
+        names = ["path", "muscle", "model", "variant", "held"]
+        rows = dict(iter(self.states.groupby("curve")))
+        return {of[1:]: rows[of[0]] for of in self.curves[names].itertuples() if of[0] in rows}
 
     def joined(self) -> pd.DataFrame:
         """One row per state, with what its curve and its muscle are."""
@@ -145,7 +157,8 @@ def _of_curve(curve: Curve) -> list[Any]:
     return [*names, curve.key, solution.status.value, solution.reason, solution.code]
 
 
-def _of_states(curves: Sequence[Curve]) -> pd.DataFrame:
+def state_rows(curves: Sequence[SolvedCase]) -> pd.DataFrame:
+    """The rows of the table of states that are of some solved cases."""
     wanted = [_wanted(curve) for curve in curves]
     counts = [len(numbers) for numbers in wanted]
 
@@ -166,15 +179,13 @@ def _of_states(curves: Sequence[Curve]) -> pd.DataFrame:
     for name in VARIABLES:
         columns[name] = joined(solution.states[name] for solution in solutions)
     exact = joined([*path.stops, np.nan][: path.states] for path in paths)
-    kinds = np.repeat(np.array([curve.place.group for curve in curves], object), counts)
-    held = np.repeat(np.array([curve.place.held for curve in curves], float), counts)
-    for name in CONTROLS:
-        for kind in HELD_KEY:
-            if HELD_KEY[kind] == name:
-                columns[name] = np.where(kinds == kind, held, columns[name])
-            if SWEPT_KEY[kind] == name:
-                prescribed = (kinds == kind) & np.isfinite(exact)
-                columns[name] = np.where(prescribed, exact, columns[name])
+    kinds = np.repeat(np.array([path.kind.value for path in paths], object), counts)
+    held = np.repeat(np.array([path.held for path in paths], float), counts)
+    for kind in PathKind:
+        here = kinds == kind.value
+        for control, prescribed in ((kind.held.key, held), (kind.swept.key, exact)):
+            known = here & np.isfinite(prescribed)
+            columns[control] = np.where(known, prescribed, columns[control])
     for name in WITH_ERROR:
         columns[f"{name}_error"] = joined(
             mesh_error.error(curve.case, curve.solution, name) for curve in curves
@@ -187,10 +198,10 @@ def _of_states(curves: Sequence[Curve]) -> pd.DataFrame:
     return pd.DataFrame({name: columns[name] for name in ("curve", *OF_STATE)})
 
 
-def _wanted(curve: Curve) -> list[int]:
+def _wanted(curve: SolvedCase) -> list[int]:
     """Numbers of the states of a curve: of its stops, then that of zero force."""
-    path = curve.case.path
-    numbers = [path.stops.index(stop) for stop in curve.stops if stop in path.stops]
+    path, wanted = curve.case.path, set(curve.stops)
+    numbers = [number for number, stop in enumerate(path.stops) if stop in wanted]
     return numbers + [len(path.stops)] * path.zero_force
 
 

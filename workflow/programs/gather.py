@@ -40,7 +40,7 @@ def run(given: argparse.Namespace) -> int:
         failures.write(plan, solved, given.failures, strained, additions.failed(tables))
     if given.deviation:
         named = {name: muscle.reference for name, muscle in plan.study.muscles.items()}
-        rows = deviation.of_table(table, reference.of_muscles(named))
+        rows = deviation.table(table, reference.of_muscles(named))
         with atomic_write(given.deviation) as beside:
             rows.to_csv(beside, index=False, float_format="%.6g")
     return 0

@@ -1,5 +1,6 @@
 """The analysis of accuracy on made-up solutions, whose errors and orders are known."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -140,6 +141,30 @@ def test_deviation_from_both_maps_is_apart(table):
         assert mesh[f"{name}_share [1]"].notna().all()
         ours = mesh.groupby("model")[f"{name}_share [1]"].first()
         assert ours["geometric"] > ours["cylinder"] > ours["membrane"]
+
+
+def test_a_curve_that_ends_early_is_compared_as_far_as_it_goes():
+    """One without any state has no error; nobody is told of an empty slice."""
+    solved = [made_up(asked) for asked in cases.cases(load(STUDY))]
+    ended = {"membrane coarser, mesh": 15, "membrane coarsest, mesh": 0}
+    for one in solved:
+        if one.asked.label in ended:
+            for values in one.solution.states.values():
+                values[ended[one.asked.label] :] = np.nan
+            for k in range(ended[one.asked.label], len(one.solution.state_status)):
+                one.solution.state_status[k] = StateStatus.NOT_REACHED
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = table_of(solved)
+    mesh = found[(found["set"] == "mesh") & (found["model"] == "membrane")].set_index("mesh")
+    expected = abs(COEFFICIENT["membrane"]) * 0.5 ** -ORDER["membrane"]
+    largest = LARGEST + MODELLING["membrane"]
+    assert mesh.loc["coarser", "force_error [1]"] == pytest.approx(expected / largest, rel=0.02)
+    assert np.isfinite(mesh.loc["coarser", "total_error [1]"])
+    assert mesh.loc["coarser", "festo_musclesim_left_out [1]"] == 0
+    assert np.isnan(
+        mesh.loc["coarsest", ["force_error [1]", "total_error [1]"]].astype(float)
+    ).all()
 
 
 def test_table_is_taken_over_from_the_study(tmp_path):

@@ -48,7 +48,7 @@ def curves_of(case, count):
         )
         place = Place("isobaric", f"m{number}", "solid", "default", path.held)
         made = replace(case, path=path, fields_at=())
-        yield Curve(place, made.key, made, solution, stops)
+        yield Curve(made, solution, stops, place)
 
 
 @pytest.fixture(scope="module")

@@ -109,7 +109,7 @@ def small_scene():
                 model=model,
             )
             place = Place("isobaric", "dmsp20", model, "default", 0.3)
-            solved.append(Curve(place, case.key, case, spoil(solve(case)), stops))
+            solved.append(Curve(case, spoil(solve(case)), stops, place))
         return SimpleNamespace(
             name="small",
             scene=SimpleNamespace(path="isobaric", held=(0.3,), swept=stops, quantities=()),

@@ -69,8 +69,16 @@ def pair_error(coarse: ArrayLike, fine: ArrayLike, ratio: float = 2.0) -> NDArra
 
 
 def share(difference: ArrayLike, scale: ArrayLike) -> float:
-    """Largest absolute difference as a share of the largest absolute value of ``scale``."""
-    return float(np.nanmax(np.abs(difference)) / np.nanmax(np.abs(scale)))
+    """Largest absolute difference as a share of the largest absolute value of ``scale``.
+
+    Of the values that are known; NaN where there are none.
+    """
+    return _largest(difference) / _largest(scale)
+
+
+def _largest(values: ArrayLike) -> float:
+    known = np.abs(np.asarray(values, dtype=float))
+    return float(np.nanmax(known)) if np.isfinite(known).any() else np.nan
 
 
 def exponent(x: ArrayLike, y: ArrayLike) -> float:

@@ -18,11 +18,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
 from solver.case import Case
 from solver.load_path import PathKind
-from solver.record import Solution
 from workflow.analyses.accuracy.errors import (
     Array,
     extrapolate,
@@ -30,9 +28,9 @@ from workflow.analyses.accuracy.errors import (
     pair_error,
     share,
 )
-from workflow.analyses.accuracy.settings import PRESSURE, STEP
 from workflow.analyses.analysis import Solved
 from workflow.data import deviation, reference
+from workflow.data.states import STOP
 from workflow.plan.mesh_error import PART
 from workflow.study.contents import Study
 
@@ -58,29 +56,26 @@ def rows(solved: Iterable[Solved]) -> pd.DataFrame:
     _against_maps(table)
     finest = table.groupby(["set", "model", "mesh"])["refinement"].transform("max")
     other_of_pair = (table["set"] == "scenes") & (table["refinement"] == finest)
-    return (
-        table[~other_of_pair].drop(columns=["_solution", "_case", "_maps"]).reset_index(drop=True)
-    )
+    return table[~other_of_pair].drop(columns=["_states", "_case", "_maps"]).reset_index(drop=True)
 
 
 def _row(one: Solved) -> dict[str, Any]:
-    """What a curve says by itself; its solution in a column that is dropped in the end."""
-    tags, case, solution = one.asked.tags, one.asked.case, one.solution
-    force, contraction = solution.states["force"], solution.states["contraction"]
+    """What a curve says by itself; its states in a column that is dropped in the end."""
+    tags, case = one.asked.tags, one.asked.case
     return {
         **{name: tags[name] for name in ("set", "model", "end", "mesh", "refinement")},
         **_mesh(case),
         "tolerance": tags["tolerance"],
         "states": case.path.states,
         "case": case.key,
-        "status": solution.status.value,
-        "iterations [1]": np.nansum(solution.states["iterations"]),
+        "status": one.solution.status.value,
+        "iterations [1]": one.states["iterations"].sum(),
         **{
-            f"force at {100 * e:g} % [N]": _at(contraction, force, e)
+            f"force at {100 * e:g} % [N]": _along(one.states, "force").get(e, np.nan)
             for e in (0.0, 0.1, 0.2)
             if case.path.kind is PathKind.ISOBARIC
         },
-        "_solution": solution,
+        "_states": one.states,
         "_case": case,
         "_maps": tags.get("maps", ""),
     }
@@ -96,20 +91,21 @@ def _mesh(case: Case) -> dict[str, float | str]:
     return settings | {"rows": " ".join(map(str, rows))}
 
 
-def _at(contraction: Array, force: Array, wanted: float) -> float:
-    found = force[np.abs(contraction - wanted) < 1e-9]
-    return float(found[0]) if len(found) else np.nan
+def _along(states: pd.DataFrame, name: str) -> pd.Series:
+    """Values of a curve by the contraction that is prescribed."""
+    at_stops = states.loc[states["point"] == STOP, ["contraction", name]]
+    return at_stops.set_index("contraction")[name]
 
 
-def _states(rows: pd.DataFrame, name: str) -> Array:
+def _values(rows: pd.DataFrame, name: str) -> Array:
     """Values of shape (mesh, state)."""
-    return np.stack([solution.states[name] for solution in rows["_solution"]])
+    return np.stack([states[name].to_numpy() for states in rows["_states"]])
 
 
 def _add_thresholds(table: pd.DataFrame, solved: list[Solved]) -> None:
     """Threshold pressure of every mesh of the normal condition [MPa]."""
     found = {
-        (one.asked.tags["model"], one.asked.tags["mesh"]): one.solution.states["pressure"][-1]
+        (one.asked.tags["model"], one.asked.tags["mesh"]): one.states["pressure"].iloc[-1]
         for one in solved
         if one.asked.tags["quantity"] == "threshold"
     }
@@ -126,8 +122,8 @@ def _against_limits(table: pd.DataFrame) -> None:
         if len(family) < 3:
             continue
         quantities = {
-            "force": ("force", _states(rows, "force")),
-            "diameter": ("diameter", _states(rows, "inner_diameter_inflated")),
+            "force": ("force", _values(rows, "force")),
+            "diameter": ("diameter", _values(rows, "inner_diameter_inflated")),
             "threshold": ("threshold", rows[["threshold_pressure [MPa]"]].to_numpy(dtype=float)),
         }
         if name == "butt":
@@ -157,27 +153,18 @@ def _against_strictest(table: pd.DataFrame) -> None:
     """Step sizes and tolerances against the default mesh with the strictest tolerance."""
     for _, rows in table[table["set"].isin(["steps", "tolerance"])].groupby("model"):
         best = rows.loc[rows["tolerance"].idxmin()]
-        strict = best["_solution"].states
-        for index, solution in rows["_solution"].items():
-            same, places = _common(solution, strict["contraction"])
+        for index, states in rows["_states"].items():
             for quantity, name in (("force", "force"), ("diameter", "inner_diameter_inflated")):
-                expected, found = strict[name][places], solution.states[name][same]
-                table.loc[index, f"{quantity}_error [1]"] = share(found - expected, strict[name])
-
-
-def _common(solution: Solution, contractions: Array) -> tuple[list[int], list[int]]:
-    """Numbers of the states with the same contraction, here and there."""
-    there = {round(e, 6): k for k, e in enumerate(contractions)}
-    here = [round(e, 6) for e in solution.states["contraction"]]
-    same = [k for k, e in enumerate(here) if e in there]
-    return same, [there[here[k]] for k in same]
+                strict = _along(best["_states"], name)
+                off = _along(states, name) - strict  # at the contractions that both have
+                table.loc[index, f"{quantity}_error [1]"] = share(off, strict)
 
 
 def _against_pairs(table: pd.DataFrame) -> None:
     """Curves of the scenes against their own on a mesh twice as fine."""
     for _, pair in table[table["set"] == "scenes"].groupby(["model", "mesh"]):
         coarse, fine = pair.sort_values("refinement").index
-        states = [table.loc[k, "_solution"].states for k in (coarse, fine)]
+        states = [table.loc[k, "_states"] for k in (coarse, fine)]
         case = table.loc[coarse, "_case"]
         force = [s["force"] for s in states]
         if case.path.kind is PathKind.ISOTONIC:
@@ -199,23 +186,20 @@ def _against_smooth(table: pd.DataFrame) -> None:
     """The bare tube against its own limit; the exact solution has fewer digits than that."""
     rows = table[table["set"] == "tube"].sort_values("refinement")
     for quantity, name in (("force", "force"), ("diameter", "inner_diameter_inflated")):
-        _one_limit(table, rows.index, rows, quantity, _states(rows, name))
+        _one_limit(table, rows.index, rows, quantity, _values(rows, name))
 
 
 def _against_fullest(table: pd.DataFrame) -> None:
     """Every curve of the normal condition against the limit of the fullest model."""
     mesh = table[table["set"] == "mesh"]
-    limits = {
-        model: extrapolate(family["refinement"].tolist(), _states(family, "force")).limit
-        for model, family in mesh[mesh["refinement"] > 0].groupby("model")
-    }
+    limits = {}
+    for model, family in mesh[mesh["refinement"] > 0].groupby("model"):
+        limit = extrapolate(family["refinement"].tolist(), _values(family, "force")).limit
+        limits[model] = pd.Series(limit, _along(family["_states"].iloc[0], "force").index)
     fullest = limits[FULLEST]
-    contractions: Array = STEP * np.arange(len(fullest), dtype=float)
     for index, row in table[table["set"].isin(["mesh", "steps", "tolerance"])].iterrows():
-        same, places = _common(row["_solution"], contractions)
-        force = row["_solution"].states["force"]
-        total = share(force[same] - fullest[places], fullest)
-        table.loc[index, "total_error [1]"] = total
+        force = _along(row["_states"], "force")
+        table.loc[index, "total_error [1]"] = share(force - fullest, fullest)
         own = limits.get(row["model"], force if row["set"] == "mesh" else None)
         if own is not None:
             table.loc[index, "modelling_error [1]"] = share(own - fullest, fullest)
@@ -224,22 +208,9 @@ def _against_fullest(table: pd.DataFrame) -> None:
 def _against_maps(table: pd.DataFrame) -> None:
     """Mean deviation from the muscle's maps by workflow/data/deviation.py, at one pressure."""
     for index, row in table[table["set"] == "mesh"].iterrows():
-        solution = row["_solution"]
         for name, found in reference.load(row["_maps"].split()).items():
-            summary = deviation.summary(deviation.states(found, *_labelled(solution)))
+            summary = deviation.summary(deviation.states(found, row["_states"]))
             table.loc[index, f"{name}_relative [1]"] = summary["mean_relative [1]"]
             table.loc[index, f"{name}_share [1]"] = summary["mean_of_largest_force [1]"]
             left_out = summary["left_out_outside_the_map"] + summary["left_out_small_reference"]
             table.loc[index, f"{name}_left_out [1]"] = left_out
-
-
-def _labelled(solution: Solution) -> tuple[xr.DataArray, xr.DataArray]:
-    """Force and status over pressure and contraction."""
-    coords = {
-        "pressure": [PRESSURE],
-        "contraction": np.round(solution.states["contraction"], 6),
-    }
-    dims = ("pressure", "contraction")
-    status = [[str(s.value) for s in solution.state_status]]
-    force = xr.DataArray(solution.states["force"][None], coords, dims)
-    return force, xr.DataArray(status, coords, dims)

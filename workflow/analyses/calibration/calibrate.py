@@ -16,11 +16,9 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from numpy.typing import NDArray
 
 from geometry.muscle import Braid
-from solver.status import StateStatus
 from workflow.analyses.calibration.fit import Fitted, Parameter, fit
 from workflow.analyses.calibration.forward_model import ForwardModel
 from workflow.data import bench, deviation
@@ -128,14 +126,8 @@ def _states(result: Calibration, found: ForceMap, forward: ForwardModel) -> pd.D
         ("after", result.values, CHECK),
     ):
         for pressure in pressures:
-            force = forward.forces(values, model, pressure, CONTRACTIONS)
-            status = np.where(np.isfinite(force), StateStatus.CONVERGED.value, "missing")
-            axes = {"pressure": [pressure], "contraction": list(CONTRACTIONS)}
-            rows = deviation.states(
-                found,
-                xr.DataArray(force[None], axes),
-                xr.DataArray(status[None], axes),
-            )
+            computed = forward.states(values, model, pressure, CONTRACTIONS)
+            rows = deviation.states(found, computed)
             role = "fit" if pressure in entry.fit_pressure else "report"
             frames.append(rows.assign(values=when, model=model, role=role))
     return pd.concat(frames, ignore_index=True).drop_duplicates(

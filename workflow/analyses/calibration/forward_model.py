@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from geometry.make import make
@@ -15,7 +16,8 @@ from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
 from solver.models import MODELS
 from solver.solve import solve
-from solver.status import StateStatus
+from workflow.data.records import SolvedCase
+from workflow.data.states import GOOD, state_rows
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
 
@@ -35,13 +37,13 @@ def changed(muscle: StudiedMuscle, values: Mapping[str, float]) -> StudiedMuscle
 
 
 class ForwardModel:
-    """Isobaric forces by a model; each case is solved once, in a folder for scratch files."""
+    """Isobaric curves by a model; each case is solved once, in a folder for scratch files."""
 
     def __init__(self, study: Study, muscle: StudiedMuscle, folder: Path) -> None:
         self.muscle, self.folder = muscle, folder
         self.variant = study.variants["default"]
         self.limits = freefem.Limits(wall_time=study.wall_time, memory=study.memory)
-        self.solved: dict[str, NDArray[np.float64]] = {}
+        self.solved: dict[str, pd.DataFrame] = {}
 
     def forces(
         self,
@@ -51,6 +53,17 @@ class ForwardModel:
         stops: Iterable[float],
     ) -> NDArray[np.float64]:
         """Forces at rising contractions [N]; NaN where there is no valid state."""
+        found = self.states(values, model, pressure, stops)
+        return np.asarray(found["force"].where(found["status"] == GOOD))
+
+    def states(
+        self,
+        values: Mapping[str, float],
+        model: str,
+        pressure: float,
+        stops: Iterable[float],
+    ) -> pd.DataFrame:
+        """Rows of the table of states, at rising contractions."""
         muscle = changed(self.muscle, values)
         case = Case(
             muscle=muscle.muscle,
@@ -66,8 +79,7 @@ class ForwardModel:
                 found, _ = solve(case, self._mesh(case), self.folder / "log", self.limits)
             except freefem.Outside as error:
                 raise StudyError(f"not solved: {error}") from None
-            good = np.array([status is StateStatus.CONVERGED for status in found.state_status])
-            self.solved[case.key] = np.where(good, found.states["force"], np.nan)
+            self.solved[case.key] = state_rows([SolvedCase(case, found, case.path.stops)])
         return self.solved[case.key]
 
     def _mesh(self, case: Case) -> Path | None:

@@ -1,1 +1,1 @@
-"""The paper's claims, each judged by a small function of the dataset."""
+"""The paper's claims, each judged by a small function of the states."""

@@ -2,8 +2,8 @@
 
 The cases are those of the study itself, which have its EA, and the same again for every other EA by
 the membrane, which is fast and exact enough; the stress by the solid, which alone has it. Every EA
-makes one dataset, of which the claims ask everything. What single threads change of the force
-of silicone is computed by the cell and is a group of the dataset of the study's EA.
+makes one table of states, of which the claims ask everything. What single threads change of the
+force of silicone is computed by the cell and stands beside the table of the study's EA.
 """
 
 from collections.abc import Iterator
@@ -25,7 +25,7 @@ STIFFNESSES = (50.0, 150.0, 315.0, 594.0, 650.0)  # N; 594 is the thickest threa
 
 @dataclass(frozen=True)
 class PlacedCase(AnalysisCase):
-    """A case at its place in the dataset of one EA."""
+    """A case at its place among the states of one EA."""
 
     place: Place | None = None
     muscle: StudiedMuscle | None = None

@@ -1,14 +1,16 @@
-"""What a claim is, what is found of it, and how its function reads the dataset."""
+"""What a claim is, what is found of it, and how its function reads the states."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
-import xarray as xr
+import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from solver.status import StateStatus
+from solver.load_path import PathKind
+from workflow.data.reference import ForceMap
+from workflow.data.states import GOOD, STOP, ZERO, Table
 
 Array = NDArray[np.float64]
 MUSCLE = "dmsp20"  # the normal condition
@@ -27,7 +29,7 @@ class Verdict(StrEnum):
 
 
 class Missing(Exception):
-    """The dataset does not hold what a claim speaks of."""
+    """There are no states of what a claim speaks of."""
 
 
 @dataclass(frozen=True)
@@ -41,32 +43,74 @@ class Finding:
 
 @dataclass(frozen=True)
 class Data:
-    """The dataset (workflow/data/dataset.py) and the model whose curves are judged."""
+    """What the claims are judged by.
 
-    tree: xr.DataTree
+    Attributes
+    ----------
+    table : the states
+    model : whose curves are judged
+    maps : the force maps of the study's muscles, by name
+    stress : what is left of the fields, one row per state (stress.py)
+    threads : what single threads change of the force of silicone [N], by wall thickness [mm]
+    """
+
+    table: Table
     model: str
+    maps: Mapping[str, ForceMap] = field(default_factory=dict)
+    stress: pd.DataFrame | None = None
+    threads: pd.Series | None = None
 
-    def curve(
-        self, group: str, quantity: str, *, model: str | None = None, **at: str | float
-    ) -> xr.DataArray:
-        """A quantity along the swept control; NaN where a state is not converged.
+    def states(
+        self, path: str, held: float, muscle: str = MUSCLE, model: str | None = None
+    ) -> pd.DataFrame:
+        """The states of a curve.
 
         Raises
         ------
         Missing
             If there is no such curve.
         """
-        place = {"muscle": MUSCLE, "model": model or self.model, "variant": "default"} | at
-        try:
-            data = self.tree[group].to_dataset().sel(place)
-            found = data[quantity]
-        except KeyError:
-            raise Missing(f"the dataset has no {quantity} of {place}") from None
-        if "status" in data and found.dims:
-            found = found.where(data.status == StateStatus.CONVERGED.value)
-        if not np.isfinite(found).any():
-            raise Missing(f"the dataset has no converged {quantity} of {place}")
+        found = self.table.curve(path, muscle, model or self.model, "default", held)
+        if found is None:
+            raise Missing(f"there is no {self._named(path, held, muscle, model)}")
         return found
+
+    def curve(
+        self, path: str, quantity: str, held: float, muscle: str = MUSCLE, model: str | None = None
+    ) -> pd.Series:
+        """A quantity by the control that is swept; NaN where a state is not converged.
+
+        Raises
+        ------
+        Missing
+            If there is no such curve, or nothing of it has converged.
+        """
+        rows = self.states(path, held, muscle, model)
+        rows = rows[rows["point"] == STOP].set_index(PathKind(path).swept.key)
+        found = rows[quantity].where(rows["status"] == GOOD)
+        if not np.isfinite(found).any():
+            named = self._named(path, held, muscle, model)
+            raise Missing(f"there is no converged {quantity} of {named}")
+        return found
+
+    def zero_force(self, path: str, held: float) -> float:
+        """The swept value at which there is no force.
+
+        Raises
+        ------
+        Missing
+            If there is no such curve or state.
+        """
+        kind, rows = PathKind(path), self.states(path, held)
+        found = rows.loc[rows["point"] == ZERO, kind.swept.key].dropna()
+        if found.empty:
+            raise Missing(f"there is no {kind.zero_force} of {self._named(path, held)}")
+        return float(found.iloc[0])
+
+    def _named(self, path: str, held: float, muscle: str = MUSCLE, model: str | None = None) -> str:
+        """A curve in a sentence."""
+        at = PathKind(path).held.text(held)
+        return f"{path} curve of {muscle} at {at} by {model or self.model}"
 
     def forces(
         self,
@@ -76,8 +120,8 @@ class Data:
         model: str | None = None,
     ) -> Array:
         """Forces at some contractions and constant pressure [N]."""
-        curve = self.curve("isobaric", "force", muscle=muscle, pressure=pressure, model=model)
-        return values(curve, contraction=contractions)
+        curve = self.curve("isobaric", "force", pressure, muscle, model)
+        return values(curve, contractions)
 
 
 @dataclass(frozen=True)
@@ -92,7 +136,7 @@ class Claim:
     judge: Callable[[Data], Finding]
 
 
-def values(curve: xr.DataArray, **at: ArrayLike) -> Array:
+def values(curve: pd.Series, at: ArrayLike) -> Array:
     """Numbers of a curve at some stops.
 
     Raises
@@ -100,16 +144,15 @@ def values(curve: xr.DataArray, **at: ArrayLike) -> Array:
     Missing
         If one of them is not there or not converged.
     """
-    try:
-        found = np.asarray(curve.sel({k: np.asarray(v) for k, v in at.items()}), dtype=float)
-    except KeyError:
-        raise Missing(f"the dataset has no state at {at}") from None
+    stops = np.atleast_1d(at)
+    found: Array = curve.reindex(stops).to_numpy(dtype=float)
     if not np.isfinite(found).all():
-        raise Missing(f"a state at {at} is not converged")
+        missing = listed(stops[~np.isfinite(found)], "g")
+        raise Missing(f"there is no converged state at {curve.index.name} {missing}")
     return found
 
 
-def between(curve: xr.DataArray, low: float, high: float) -> xr.DataArray:
+def between(curve: pd.Series, low: float, high: float) -> pd.Series:
     """The converged states of a curve from one value of its control to another.
 
     Raises
@@ -117,18 +160,17 @@ def between(curve: xr.DataArray, low: float, high: float) -> xr.DataArray:
     Missing
         If there are fewer than three.
     """
-    control = str(curve.dims[0])
-    found = curve.sel({control: slice(low - 1e-9, high + 1e-9)}).dropna(control)
+    found = curve.loc[low - 1e-9 : high + 1e-9].dropna()
     if found.size < 3:
+        control = curve.index.name
         raise Missing(f"fewer than three converged states from {control} {low:g} to {high:g}")
     return found
 
 
-def slope(curve: xr.DataArray, low: float, high: float) -> float:
+def slope(curve: pd.Series, low: float, high: float) -> float:
     """Mean slope of a curve between two values of its control, as far as it is known there."""
     found = between(curve, low, high)
-    control = found[str(found.dims[0])].values
-    return float((found.values[-1] - found.values[0]) / (control[-1] - control[0]))
+    return float((found.iloc[-1] - found.iloc[0]) / (found.index[-1] - found.index[0]))
 
 
 def bend(x: ArrayLike, y: ArrayLike) -> float:

@@ -5,7 +5,6 @@ import pandas as pd
 
 from workflow.analyses.claims.claim import (
     GEOMETRIC,
-    MUSCLE,
     PRESSURE,
     STEPS,
     Array,
@@ -21,7 +20,6 @@ from workflow.analyses.claims.claim import (
 )
 from workflow.data import deviation
 from workflow.data.deviation import RELATIVE, SHARE
-from workflow.data.reference import ForceMap
 
 PRESSURES = (0.2, 0.3, 0.4)  # MPa
 MEAN = -0.099  # deviation of the paper's model from the manufacturer's map
@@ -121,17 +119,10 @@ def _equation(data: Data) -> Array:
 
 def _deviations(data: Data, model: str) -> pd.DataFrame:
     """All states of the rule (workflow/data/deviation.py)."""
-    try:
-        points = data.tree["reference"].to_dataset()
-        points = points.isel(point=np.flatnonzero(points.source.values == MAP))
-        curves = data.tree["isobaric"].to_dataset()
-        curves = curves.sel(muscle=MUSCLE, model=model, variant="default", pressure=list(PRESSURES))
-    except KeyError:
-        raise Missing("the dataset has no such curves, or not the manufacturer's map") from None
-    used = points.isel(point=np.flatnonzero(points.suspect.values == 0))
-    columns = [used.pressure.values, used.contraction.values, used.force.values]
-    found = ForceMap(MAP, MAP, np.column_stack(columns), np.empty((0, 3)))
-    rows = deviation.states(found, curves.force, curves.status)
+    if MAP not in data.maps:
+        raise Missing("there is no manufacturer's map")
+    curves = pd.concat([data.states("isobaric", p, model=model) for p in PRESSURES])
+    rows = deviation.states(data.maps[MAP], curves)
     if rows[SHARE].isna().any():
         raise Missing("a state is not converged or outside the manufacturer's map")
     return rows

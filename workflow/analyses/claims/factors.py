@@ -125,8 +125,8 @@ def silicone_is_best_at_two(data: Data) -> Finding:
     """C8d: the thickness at which the silicone muscle pulls most, its threads single ones."""
     force = _wall_forces(data, SILICONE)
     why = f"{listed(force)} N at 1.5, 2, 2.5, 3 mm"
-    if "threads" in data.tree.children:
-        change = values(data.tree["threads"].to_dataset()["change"], wall=list(SILICONE))
+    if data.threads is not None:
+        change = values(data.threads, list(SILICONE))
         force = force + change
         why += f"; single threads change that by {listed(change, '.2f')} N (cell)"
     best = list(SILICONE)[int(np.argmax(force))]
@@ -186,10 +186,8 @@ def _wall_forces(data: Data, walls: dict[float, str]) -> Array:
 
 def _wall_contractions(data: Data, walls: dict[float, str]) -> Array:
     """Contractions under 200 N by thickness."""
-    curves = (
-        data.curve("isotonic", "contraction", muscle=name, load=LOAD) for name in walls.values()
-    )
-    return np.array([float(values(curve, pressure=PRESSURE)) for curve in curves])
+    curves = (data.curve("isotonic", "contraction", LOAD, name) for name in walls.values())
+    return np.array([values(curve, PRESSURE)[0] for curve in curves])
 
 
 CLAIMS = (

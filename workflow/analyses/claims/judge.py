@@ -1,8 +1,8 @@
-"""The paper's claims, each judged by a small function of the dataset.
+"""The paper's claims, each judged by a small function of the states.
 
 One module per group of claims: ``contraction`` (C1), ``stress`` (C2), ``pressure`` (C3 to C5),
 ``factors`` (C6 to C9) and here C10. ``judge`` asks one of them, ``scorecard`` asks them all of
-several datasets and adds how sure the answers are.
+several tables of states and adds how sure the answers are.
 """
 
 from workflow.analyses.claims.claim import Claim, Data, Finding, Missing, Verdict
@@ -13,8 +13,8 @@ from workflow.analyses.claims.stress import CLAIMS as STRESS
 
 
 def run_time(data: Data) -> Finding:
-    """C10: the dataset is the same on every machine, so it holds no times."""
-    raise Missing("times differ between machines and are no part of the dataset; see results/cost")
+    """C10: a record is the same on every machine, so it holds no times."""
+    raise Missing("times differ between machines and are no part of a record; see results/cost")
 
 
 CLAIMS: tuple[Claim, ...] = (

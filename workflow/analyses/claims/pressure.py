@@ -3,11 +3,10 @@
 import itertools
 
 import numpy as np
-import xarray as xr
+import pandas as pd
 
 from workflow.analyses.claims.claim import (
     GEOMETRIC,
-    MUSCLE,
     Array,
     Claim,
     Data,
@@ -42,7 +41,7 @@ def threshold(data: Data) -> Finding:
 def pushes_below(data: Data) -> Finding:
     """C3b: the sign of the force below the threshold."""
     force, limit = _isometric(data, "force"), _threshold(data)
-    below = force.sel(pressure=slice(1e-9, limit - 1e-9)).dropna("pressure").values
+    below = force.loc[1e-9 : limit - 1e-9].dropna()
     if not below.size:
         raise Missing("there is no converged state below the threshold")
     why = f"forces from {below.min():.1f} to {below.max():.1f} N in {below.size} states"
@@ -53,9 +52,9 @@ def nonlinear_below(data: Data) -> Finding:
     """C3c: curvature below the threshold against that above."""
     force, limit = _isometric(data, "force"), _threshold(data)
     below, above = between(force, 0, limit), between(force, limit, HIGHEST)
-    if below.pressure.values[0] > limit / 2:
+    if below.index[0] > limit / 2:
         raise Missing("the curve of this model ends before half of the threshold pressure")
-    ours, other = bend(below.pressure, below), bend(above.pressure, above)
+    ours, other = bend(below.index, below), bend(above.index, above)
     why = (
         f"the curve leaves its chord by {100 * ours:.0f} % of its range below the threshold "
         f"and by {100 * other:.1f} % above"
@@ -66,7 +65,7 @@ def nonlinear_below(data: Data) -> Finding:
 def no_threshold_in_equation(data: Data) -> Finding:
     """C3d: the force of Eq. (1) at the lowest pressures."""
     force = _isometric(data, "force", model=GEOMETRIC)
-    pulling = force.sel(pressure=slice(1e-9, None)).values
+    pulling = force.loc[1e-9:].dropna()
     why = "Eq. (1) pulls at every pressure, in proportion to it"
     return graded(float(pulling.min()), [bool((pulling > 0).all())], why)
 
@@ -75,7 +74,7 @@ def sharp_then_stable(data: Data) -> Finding:
     """C4a: slope of the inflated diameter below 0.15 against that above 0.2 MPa."""
     diameter = _isometric(data, "inner_diameter_inflated")
     low, high = slope(diameter, 0, THRESHOLD), slope(diameter, STABLE, HIGHEST)
-    first, last = values(diameter, pressure=[STABLE, HIGHEST])
+    first, last = values(diameter, [STABLE, HIGHEST])
     why = (
         f"{low:.0f} mm/MPa below 0.15 MPa and {high:.1f} above 0.2 MPa, where it grows by "
         f"{100 * (last / first - 1):.1f} %"
@@ -97,7 +96,7 @@ def mean_excess(data: Data) -> Finding:
     limit = _threshold(data)
     mean = float(between(excess, limit, HIGHEST).mean())
     upper = float(between(excess, STABLE, HIGHEST).mean())
-    last = float(excess.sel(pressure=HIGHEST))
+    (last,) = values(excess, HIGHEST)
     why = (
         f"the mean depends on where it begins: {100 * mean:+.1f} % from the threshold on, where "
         f"the equivalent diameter is 0, {100 * upper:+.1f} % from 0.2 MPa on; at 0.4 MPa it is "
@@ -111,8 +110,8 @@ def extends_at_first(data: Data) -> Finding:
     """C5a: the pressure at which the loaded muscle has its initial length again."""
     found = []
     for load in LOADS:
-        curve = _loaded(data, load).dropna("pressure")
-        pressure, contraction = curve.pressure.values, curve.values
+        curve = _loaded(data, load).dropna()
+        pressure, contraction = curve.index.to_numpy(), curve.to_numpy()
         crossing = np.flatnonzero((contraction[:-1] < 0) & (contraction[1:] >= 0))
         if not crossing.size:
             raise Missing("the loaded muscle never has its initial length")
@@ -155,29 +154,28 @@ def gap_narrows_with_load(data: Data) -> Finding:
     return graded(float(ratio.mean()), list(gaps[1] < gaps[0]), why)
 
 
-def _isometric(data: Data, quantity: str, model: str | None = None) -> xr.DataArray:
-    return data.curve("isometric", quantity, model=model, contraction=CONTRACTION)
+def _isometric(data: Data, quantity: str, model: str | None = None) -> pd.Series:
+    return data.curve("isometric", quantity, CONTRACTION, model=model)
 
 
 def _threshold(data: Data) -> float:
-    return float(_isometric(data, "threshold_pressure"))
+    return data.zero_force("isometric", CONTRACTION)
 
 
-def _equivalent(data: Data) -> xr.DataArray:
+def _equivalent(data: Data) -> pd.Series:
     """sqrt(4 F / (pi p)) above the threshold [mm]; NaN below."""
     force = _isometric(data, "force")
-    pulling = force.where((force > 0) & (force.pressure > 0))
-    size: xr.DataArray = np.sqrt(4 * pulling / (np.pi * force.pressure))
-    return size
+    pulling = force[(force > 0) & (force.index > 0)]
+    return np.sqrt(4 * pulling / (np.pi * pulling.index)).reindex(force.index)
 
 
-def _loaded(data: Data, load: float) -> xr.DataArray:
-    return data.curve("isotonic", "contraction", muscle=MUSCLE, load=load)
+def _loaded(data: Data, load: float) -> pd.Series:
+    return data.curve("isotonic", "contraction", load)
 
 
 def _contractions(data: Data) -> Array:
     """Shape (load, pressure)."""
-    return np.array([values(_loaded(data, load), pressure=PARTS) for load in LOADS])
+    return np.array([values(_loaded(data, load), PARTS) for load in LOADS])
 
 
 CLAIMS = (

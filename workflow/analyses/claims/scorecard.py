@@ -1,11 +1,11 @@
 """All claims in one table: number, how sure it is, verdict.
 
-Two things make a number unsure. Discretisation: the dataset says by how much the force of each
-state is off at most (force_error; without it SHARE of the curve's largest force), so the claims are
-judged again on copies of the dataset in which every curve is shifted by that, up or down as chance
-has it. And the thread stiffness, which the paper
-does not give: they are judged again on datasets with other EA by a faster model. A claim that is
-reproduced with one EA and not with another is reproduced partly.
+Two things make a number unsure. Discretisation: the table of states says by how much the force of
+each is off at most (force_error; without it SHARE of the curve's largest force), so the claims are
+judged again on copies of the table in which every curve is shifted by that, up or down as chance
+has it. And the thread stiffness, which the paper does not give: they are judged again on states
+with other EA by a faster model. A claim that is reproduced with one EA and not with another is
+reproduced partly.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -13,42 +13,40 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
-from solver.load_path import CONTRACTION_LIMITS
+from solver.load_path import CONTRACTION_LIMITS, PathKind
 from workflow.analyses.claims.claim import GEOMETRIC, Claim, Data, Finding, Verdict
 from workflow.analyses.claims.judge import CLAIMS, judge
+from workflow.data.states import STOP, Table
 
 MODELS = ("solid", "membrane")  # the fullest first
-SWEPT_MODEL = "membrane"  # of the datasets with other EA
+SWEPT_MODEL = "membrane"  # of the states with other EA
 SHARE = 0.0025  # of the curve's largest force; the growth of a diameter is as exact
 COPIES, SEED = 8, 20260101
 
 
-def scorecard(trees: Mapping[float, xr.DataTree], stiffness: float) -> pd.DataFrame:
+def scorecard(data: Mapping[float, Data], stiffness: float) -> pd.DataFrame:
     """One row per claim.
 
     Parameters
     ----------
-    trees : datasets by EA [N]
+    data : by EA [N]
     stiffness : EA of the study; the verdict is its own
     """
-    copies = list(shifted(trees[stiffness]))
-    others = {ea: tree for ea, tree in trees.items() if ea != stiffness}
-    return pd.DataFrame([_row(claim, trees[stiffness], copies, others) for claim in CLAIMS])
+    own = data[stiffness]
+    copies = list(shifted(own))
+    others = {ea: other for ea, other in data.items() if ea != stiffness}
+    return pd.DataFrame([_row(claim, own, copies, others) for claim in CLAIMS])
 
 
 def _row(
-    claim: Claim,
-    tree: xr.DataTree,
-    copies: Iterable[xr.DataTree],
-    others: Mapping[float, xr.DataTree],
+    claim: Claim, own: Data, copies: Iterable[Data], others: Mapping[float, Data]
 ) -> dict[str, str | float]:
-    model, found = _by_fullest_model(claim, tree)
-    again = [judge(claim, Data(copy, model)).value for copy in copies]
+    model, found = _by_fullest_model(claim, own)
+    again = [judge(claim, replace(copy, model=model)).value for copy in copies]
     swept = {ea: _by_faster_model(claim, other) for ea, other in others.items()}
     swept = {ea: f for ea, f in swept.items() if f.verdict is not Verdict.NOT_TESTABLE}
-    faster = _by_faster_model(claim, tree)
+    faster = _by_faster_model(claim, own)
     known = [found.value, *(f.value for f in swept.values())]
     judged = _weighed(found, faster, swept)
     untested = judged.verdict is Verdict.NOT_TESTABLE
@@ -73,19 +71,19 @@ def _row(
     }
 
 
-def _by_fullest_model(claim: Claim, tree: xr.DataTree) -> tuple[str, Finding]:
+def _by_fullest_model(claim: Claim, data: Data) -> tuple[str, Finding]:
     """The finding of the first model that has what the claim speaks of."""
     for model in MODELS:
-        found = judge(claim, Data(tree, model))
+        found = judge(claim, replace(data, model=model))
         if found.verdict is not Verdict.NOT_TESTABLE:
             break
     return model, found
 
 
-def _by_faster_model(claim: Claim, tree: xr.DataTree) -> Finding:
+def _by_faster_model(claim: Claim, data: Data) -> Finding:
     """The finding of the model that there is with every EA."""
-    found = judge(claim, Data(tree, SWEPT_MODEL))
-    return found if found.verdict is not Verdict.NOT_TESTABLE else _by_fullest_model(claim, tree)[1]
+    found = judge(claim, replace(data, model=SWEPT_MODEL))
+    return found if found.verdict is not Verdict.NOT_TESTABLE else _by_fullest_model(claim, data)[1]
 
 
 def _weighed(found: Finding, faster: Finding, swept: Mapping[float, Finding]) -> Finding:
@@ -104,49 +102,46 @@ def _weighed(found: Finding, faster: Finding, swept: Mapping[float, Finding]) ->
     return replace(found, why=why)
 
 
-def shifted(tree: xr.DataTree) -> Iterator[xr.DataTree]:
-    """Copies of a dataset with every curve of a solved model shifted by what it may be off."""
+def shifted(data: Data) -> Iterator[Data]:
+    """Copies in which every curve of a solved model is shifted by what it may be off."""
     chance = np.random.default_rng(SEED)
+    curves, states, shifts = data.table.curves, data.table.states, _shifts(data.table)
     for _ in range(COPIES):
-        groups = {name: node.to_dataset() for name, node in tree.children.items()}
-        for name in {"isobaric", "isometric", "isotonic"} & set(groups):
-            groups[name] = _shifted(name, groups[name], chance)
-        yield xr.DataTree.from_dict(groups)
+        signs = pd.Series(chance.choice([-1.0, 1.0], len(curves)), curves.index)
+        sign = signs.loc[states["curve"]].to_numpy()
+        changed = {name: states[name] + sign * shift for name, shift in shifts.items()}
+        changed["contraction"] = changed["contraction"].clip(*CONTRACTION_LIMITS)
+        yield replace(data, table=replace(data.table, states=states.assign(**changed)))
 
 
-def _shifted(name: str, data: xr.Dataset, chance: np.random.Generator) -> xr.Dataset:
-    """One group, shifted."""
-    dims = data.case.dims
-    sign = xr.DataArray(chance.choice([-1.0, 1.0], data.case.shape), dims=dims)
-    sign = sign.where(data.model != GEOMETRIC, 0.0)
-    changed = {}
-    if name == "isotonic":
-        # stiffness is dF/dl, and contraction is 1 - l/L
-        shift = sign * _error(data, _blocked_force(data)) / (data.stiffness * data.length)
-        changed["contraction"] = (data.contraction + shift).clip(*CONTRACTION_LIMITS)
-    else:
-        swept = next(dim for dim in data.force.dims if dim not in dims)
-        largest = np.abs(data.force).max(swept)
-        error = _error(data, largest)
-        changed["force"] = data.force + sign * error
-        if "threshold_pressure" in data:
-            steepness = largest / (data.pressure.max() - data.threshold_pressure)
-            shift = sign * error.max(swept) / steepness
-            changed["threshold_pressure"] = data.threshold_pressure - shift
-    growth = data.inner_diameter_inflated - data.inner_diameter
-    changed["inner_diameter_inflated"] = data.inner_diameter_inflated + sign * SHARE * growth
-    return data.assign({key: new.transpose(*data[key].dims) for key, new in changed.items()})
+def _shifts(table: Table) -> dict[str, pd.Series]:
+    """What the numbers of every state may be off, by column; 0 for Eq. (1), which has no mesh."""
+    rows, curve = table.joined(), table.states["curve"]
+    of_isotonic, of_isometric = (
+        rows["path"] == kind for kind in (PathKind.ISOTONIC, PathKind.ISOMETRIC)
+    )
+    stops = rows["point"] == STOP
+    largest = rows["force"].abs().where(stops).groupby(curve).transform("max")
+    usual = SHARE * largest.mask(of_isotonic, _blocked_force(rows))
+    error = rows["force_error"].fillna(usual) if "force_error" in rows else usual
+    # of a state of zero force the pressure moves: by how steep the force is above it
+    highest = rows.loc[of_isometric & stops, "pressure"].max()
+    steepness = largest / (highest - rows["pressure"])
+    threshold = -error.where(stops).groupby(curve).transform("max") / steepness
+    # stiffness is dF/dl, and contraction is 1 - l/L
+    contraction = error / (rows["stiffness"] * rows["length"])
+    growth = rows["inner_diameter_inflated"] - rows["inner_diameter"]
+    shifts = {
+        "force": error.where(stops & ~of_isotonic, 0.0),
+        "contraction": contraction.where(of_isotonic, 0.0),
+        "pressure": threshold.where(of_isometric & ~stops, 0.0),
+        "inner_diameter_inflated": SHARE * growth,
+    }
+    return {name: shift.where(rows["model"] != GEOMETRIC, 0.0) for name, shift in shifts.items()}
 
 
-def _error(data: xr.Dataset, largest: xr.DataArray) -> xr.DataArray:
-    """What the force of each state is off at most [N]."""
-    usual = SHARE * largest
-    return data.force_error.fillna(usual) if "force_error" in data else usual
-
-
-def _blocked_force(data: xr.Dataset) -> xr.DataArray:
-    """Force at no contraction and each pressure by Eq. (1) [N]."""
-    angle = np.radians(data.braid_angle)
-    area = np.pi * data.inner_diameter**2 / 4
-    force: xr.DataArray = data.pressure * area * (3 * np.cos(angle) ** 2 - 1) / np.sin(angle) ** 2
-    return force
+def _blocked_force(rows: pd.DataFrame) -> pd.Series:
+    """Force at no contraction and the pressure of each state by Eq. (1) [N]."""
+    angle = np.radians(rows["braid_angle"])
+    area = np.pi * rows["inner_diameter"] ** 2 / 4
+    return rows["pressure"] * area * (3 * np.cos(angle) ** 2 - 1) / np.sin(angle) ** 2

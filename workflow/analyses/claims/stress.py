@@ -1,13 +1,12 @@
 """C2, figure 5: principal stress in the wall at 10 % contraction.
 
-The fields of a record are reduced to four numbers per state, which stand in the tree as the group
-``/stress`` with the dimensions muscle, model, variant, pressure, contraction.
+The fields of a record are reduced to four numbers per state, which stand in a table beside that of
+the states, with the names of their curves.
 """
 
 from collections.abc import Mapping
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from workflow.analyses.claims.claim import (
@@ -88,13 +87,14 @@ def growing_areas(data: Data) -> Finding:
 
 
 def _at_pressures(data: Data, quantity: str) -> Array:
-    try:
-        curve: xr.DataArray = data.tree["stress"].to_dataset()[quantity]
-        # one model and one variant, that of the scene which asks for the stress
-        curve = curve.sel(muscle=MUSCLE, contraction=CONTRACTION).isel(model=0, variant=0)
-    except KeyError:
-        raise Missing("the dataset has no stress of these states") from None
-    return values(curve, pressure=PRESSURES)
+    if data.stress is None:
+        raise Missing("there is no stress of any state")
+    rows = data.stress[data.stress["muscle"] == MUSCLE]
+    rows = rows[rows["contraction"] == CONTRACTION]
+    # of one model and one variant, that of the scene which asks for the stress
+    for _, curve in rows.groupby(["model", "variant"]):
+        return values(curve.set_index("pressure")[quantity], PRESSURES)
+    raise Missing("there is no stress of these states")
 
 
 CLAIMS = (

@@ -4,17 +4,18 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
 from solver.status import StateStatus
 from workflow.analyses.analysis import Solved
 from workflow.analyses.claims.cases import PlacedCase
-from workflow.analyses.claims.scorecard import scorecard
+from workflow.analyses.claims.claim import Data
+from workflow.analyses.claims.scorecard import MODELS, scorecard
 from workflow.analyses.claims.stress import SUMMARY, summary
 from workflow.analyses.threads.table import change_by_wall
-from workflow.data import dataset
+from workflow.data import reference
 from workflow.data.records import Curve
-from workflow.study.contents import Study
+from workflow.data.states import Table
+from workflow.study.contents import StudiedMuscle, Study
 
 
 def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
@@ -24,53 +25,49 @@ def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
 
 def table(solved: Sequence[Solved]) -> pd.DataFrame:
     """The scorecard."""
-    trees, own = {}, np.nan
+    data, own = {}, np.nan
     for stiffness in sorted({_asked(s).stiffness for s in solved}):
         here = [s for s in solved if _asked(s).stiffness == stiffness]
         own = stiffness if _asked(here[0]).own else own
-        trees[stiffness] = tree(here)
-    return scorecard(trees, own)
+        data[stiffness] = data_of(here)
+    return scorecard(data, own)
 
 
-def tree(all_solved: Sequence[Solved]) -> xr.DataTree:
-    """The dataset of some cases, with the groups of the stress and of single threads."""
-    muscles, curves, solved, cells = {}, [], [], []
-    for each in all_solved:
+def data_of(solved: Sequence[Solved]) -> Data:
+    """What the cases of one EA say: their states, the stress and what single threads change."""
+    muscles: dict[str, StudiedMuscle] = {}
+    curves: list[Curve] = []
+    cells: list[Solved] = []
+    for each in solved:
         asked = _asked(each)
         if asked.place is None or asked.muscle is None:
             cells.append(each)
             continue
-        solved.append(each)
         muscles[asked.place.muscle] = asked.muscle
-        case, stops = asked.case, asked.case.path.stops
-        curves.append(Curve(asked.place, case.key, case, each.solution, stops))
-    found = dataset.build(curves, muscles)
-    states = [state for s in solved for state in _stresses(s)]
-    if states:
-        rows = pd.DataFrame(states).set_index(
-            ["muscle", "model", "variant", "pressure", "contraction"]
-        )
-        found["stress"] = xr.DataTree(rows.to_xarray())
-    if cells:
-        change = change_by_wall(cells).rename_axis("wall").to_xarray()
-        found["threads"] = xr.DataTree(xr.Dataset({"change": change}))
-    return found
+        curves.append(Curve(asked.case, each.solution, asked.case.path.stops, asked.place))
+    stresses = [summed_up for curve in curves for summed_up in _stresses(curve)]
+    named = {name for muscle in muscles.values() for name in muscle.reference}
+    return Data(
+        Table.of(curves, muscles),
+        model=MODELS[0],
+        maps=reference.load(sorted(named)),
+        stress=pd.DataFrame(stresses) if stresses else None,
+        threads=change_by_wall(cells) if cells else None,
+    )
 
 
-def _stresses(solved: Solved) -> Iterator[dict[str, str | float]]:
+def _stresses(curve: Curve) -> Iterator[dict[str, str | float]]:
     """Summaries of the states that have a stress."""
-    asked, path = _asked(solved), solved.asked.case.path
-    assert asked.place is not None
-    for number, fields in solved.solution.fields.items():
-        if "stress" in fields and solved.solution.state_status[number] is StateStatus.CONVERGED:
-            muscle = asked.case.muscle
-            numbers = summary(fields, muscle.inner_diameter, muscle.length)
+    case, place = curve.case, curve.place
+    for number, fields in curve.solution.fields.items():
+        if "stress" in fields and curve.solution.state_status[number] is StateStatus.CONVERGED:
+            numbers = summary(fields, case.muscle.inner_diameter, case.muscle.length)
             yield {
-                "muscle": asked.place.muscle,
-                "model": asked.place.model,
-                "variant": asked.place.variant,
-                "pressure": path.held,
-                "contraction": path.stops[number],
+                "muscle": place.muscle,
+                "model": place.model,
+                "variant": place.variant,
+                "pressure": place.held,
+                "contraction": case.path.stops[number],
                 **dict(zip(SUMMARY, numbers, strict=True)),
             }
 

@@ -5,14 +5,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from solver.record import Solution
-from solver.status import StateStatus
+from solver.load_path import PathKind
 from workflow.analyses.analysis import Solved
+from workflow.data.states import SHOWN
 from workflow.study.contents import Study
 
-VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 SWITCHES = {  # what is left out: (setup with it, setup without); see cases.py
     "mesh of solid": ("solid, finer", "solid"),
     "coarse mesh of solid": ("solid, finer", "solid, coarser"),
@@ -46,10 +44,10 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
     state where a model solves by itself.
     """
     found: dict[tuple[str, str], dict[str, Solved]] = {}
-    for entry in solved:
-        tags = entry.asked.tags
-        place = str(tags["regime"]), str(tags["path"])
-        found.setdefault(place, {})[str(tags["setup"])] = entry
+    for one in solved:
+        tags = one.asked.tags
+        curve = str(tags["regime"]), str(tags["path"])
+        found.setdefault(curve, {})[str(tags["setup"])] = one
     return pd.DataFrame(
         [
             {"regime": regime, "path": path, "effect": effect} | row(setups, *pair)
@@ -63,59 +61,45 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
 def row(setups: Mapping[str, Solved], with_it: str, without: str) -> dict[str, Any]:
     """What leaving out one effect changes and saves."""
     on, off = setups[with_it], setups[without]
-    path = on.asked.case.path
-    valid = _valid(on.solution), _valid(off.solution)
-    stops = slice(0, len(path.stops))
-    both = np.logical_and(valid[0][stops], valid[1][stops])
+    path, force = on.asked.case.path, on.asked.case.path.kind.follows == "force"
+    valid, also = (solved.at_stops["status"].isin(SHOWN) for solved in (on, off))
+    both = on.at_stops[valid & also], off.at_stops[valid & also]
+    known = on.at_stops.loc[valid, path.kind.follows]
     changes = {
-        "force": _change(on, off, "force", both, path.kind != "isotonic"),
-        "contraction": _change(on, off, "contraction", both, path.kind == "isotonic"),
-        "diameter": _change(on, off, "inner_diameter_inflated", both, True),
-        "threshold": _threshold(on, off) if path.kind == "isometric" else np.nan,
+        "force": _change(*both, "force") if force else np.nan,
+        "contraction": np.nan if force else _change(*both, "contraction"),
+        "diameter": _change(*both, "inner_diameter_inflated"),
+        "threshold": _threshold(on, off) if path.kind is PathKind.ISOMETRIC else np.nan,
     }
     return {
         "with": with_it,
         "without": without,
         **{name: float(f"{value:.4g}") for name, value in changes.items()},
         "held": float(path.held),
-        "largest": float(f"{_largest(on, valid[0][stops]):.4g}"),
-        "states": int(valid[0][stops].sum()),
-        "missing": int((valid[0][stops] & ~valid[1][stops]).sum()),
+        "largest": float(f"{known.abs().max():.4g}"),
+        "states": int(valid.sum()),
+        "missing": int((valid & ~also).sum()),
         "unknowns_with": on.solution.unknowns,
         "unknowns_without": off.solution.unknowns,
-        "work_with": _work(on.solution),
-        "work_without": _work(off.solution),
+        "work_with": _work(on),
+        "work_without": _work(off),
     }
 
 
-def _valid(solution: Solution) -> NDArray[np.bool_]:
-    return np.array([status in VALID for status in solution.state_status])
-
-
-def _change(on: Solved, off: Solved, name: str, both: NDArray[np.bool_], asked: bool) -> float:
-    """The largest change at common states, as a share of the largest value; NaN if not asked."""
-    if not asked or not both.any():
-        return np.nan
-    with_it, without = (s.solution.states[name][: len(both)][both] for s in (on, off))
-    return float(np.abs(without - with_it).max() / np.abs(with_it).max())
-
-
-def _largest(on: Solved, valid: NDArray[np.bool_]) -> float:
-    """The largest force, or contraction under a load, with the effect on."""
-    name = "contraction" if on.asked.case.path.kind == "isotonic" else "force"
-    values = on.solution.states[name][: len(valid)][valid]
-    return float(np.abs(values).max()) if valid.any() else np.nan
+def _change(on: pd.DataFrame, off: pd.DataFrame, name: str) -> float:
+    """The largest change at common states, as a share of the largest value."""
+    return float((off[name] - on[name]).abs().max() / on[name].abs().max())
 
 
 def _threshold(on: Solved, off: Solved) -> float:
     """Change of the state of zero force, the last of an isometric path."""
     if not off.asked.case.path.zero_force:
         return np.nan
-    with_it, without = (s.solution.states["pressure"][-1] for s in (on, off))
+    with_it, without = (solved.states["pressure"].iloc[-1] for solved in (on, off))
     return float(abs(without - with_it) / with_it)
 
 
-def _work(solution: Solution) -> int:
+def _work(solved: Solved) -> int:
     """Unknowns times iterations; where no iterations are counted, states."""
-    iterations = np.nansum(solution.states["iterations"])
-    return int(max(iterations * solution.unknowns, len(solution.state_status)))
+    iterations = solved.states["iterations"].sum()
+    return int(max(iterations * solved.solution.unknowns, len(solved.states)))

@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from solver.load_path import Control
 from solver.status import CaseStatus, StateStatus
 from workflow.analyses.analysis import Solved
+from workflow.data.states import SHOWN
 from workflow.study.contents import Study
 
-VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 APART = 0.03  # share of the largest force from which a membrane is far from its solid
 MESH_APART = {"named": 1e-3, "hypercube": 5e-3}  # the same of a mesh from a finer one
 NOTE_COLUMNS = [
@@ -46,8 +46,8 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
     """
     finest = _finest(solved)
     rows = []
-    for entry in solved:
-        row = _row(entry) | _agreement(entry, finest[_group(entry)])
+    for one in solved:
+        row = _row(one) | _agreement(one, finest[_muscle(one)])
         rows.append(row | {"cause": _cause(row)})
     return pd.DataFrame(rows)
 
@@ -74,47 +74,43 @@ def _cause(row: Mapping[str, Any]) -> str:
     return "ends bend, the membrane's wall cannot"
 
 
-def _group(entry: Solved) -> tuple[str, str]:
-    return str(entry.asked.tags["set"]), str(entry.asked.tags["name"])
+def _muscle(one: Solved) -> tuple[str, str]:
+    """What cases have in common that differ in mesh and model only."""
+    return str(one.asked.tags["set"]), str(one.asked.tags["name"])
 
 
 def _finest(solved: Sequence[Solved]) -> dict[tuple[str, str], Solved]:
     """Of every named case and sample the solid on its finest mesh."""
     found: dict[tuple[str, str], Solved] = {}
-    for entry in solved:
-        if entry.asked.case.model != "solid":
-            continue
-        known = found.get(_group(entry))
-        if known is None or float(known.asked.tags["mesh"]) < float(entry.asked.tags["mesh"]):
-            found[_group(entry)] = entry
+    solids = [one for one in solved if one.asked.case.model == "solid"]
+    for one in sorted(solids, key=lambda one: float(one.asked.tags["mesh"])):
+        found[_muscle(one)] = one
     return found
 
 
-def _row(entry: Solved) -> dict[str, Any]:
-    case, solution = entry.asked.case, entry.solution
-    muscle, states = case.muscle, solution.states
+def _row(one: Solved) -> dict[str, Any]:
+    case, states, path = one.asked.case, one.states, one.asked.case.path
+    muscle = case.muscle
     assert muscle.braid is not None
     assert case.thread is not None
-    reached = np.isfinite(states["force"])
-    count = max(int(reached.sum()), 1)
-    modulus = case.rubber.load_scale
-    pressure = max(case.path.stops) if case.path.kind != "isobaric" else case.path.held
+    reached = int(states["force"].notna().sum())
+    pressure = path.held if path.kind.held is Control.PRESSURE else max(path.stops)
     return {
-        **entry.asked.tags,
+        **one.asked.tags,
         "model": case.model,
-        "path": case.path.kind.value,
-        "status": solution.status.value,
-        "reason": solution.reason,
-        "states": len(reached),
-        "states reached": int(reached.sum()),
-        "unstable states": sum(s is StateStatus.UNSTABLE for s in solution.state_status),
-        "invalid states": sum(s is StateStatus.INVALID_STATE for s in solution.state_status),
-        "smallest det F": _smallest(states["min_det_f"]),
-        "smallest det F at nodes": _smallest(states["min_det_f_nodes"]),
-        "iterations per state": float(np.nansum(states["iterations"])) / count,
-        "cutbacks": int(np.nansum(states["cutbacks"])),
-        "largest force [N]": _largest_force(entry),
-        "pressure by modulus": pressure / modulus,
+        "path": path.kind.value,
+        "status": one.solution.status.value,
+        "reason": one.solution.reason,
+        "states": len(states),
+        "states reached": reached,
+        "unstable states": int((states["status"] == StateStatus.UNSTABLE).sum()),
+        "invalid states": int((states["status"] == StateStatus.INVALID_STATE).sum()),
+        "smallest det F": states["min_det_f"].min(),
+        "smallest det F at nodes": states["min_det_f_nodes"].min(),
+        "iterations per state": states["iterations"].sum() / max(reached, 1),
+        "cutbacks": int(states["cutbacks"].sum()),
+        "largest force [N]": _largest_force(one),
+        "pressure by modulus": pressure / case.rubber.load_scale,
         # hoop strain of threads that carry all of the pressure, as in a thin tube
         "thread strain": pressure
         * muscle.inner_diameter**2
@@ -123,43 +119,27 @@ def _row(entry: Solved) -> dict[str, Any]:
     }
 
 
-def _agreement(entry: Solved, reference: Solved) -> dict[str, Any]:
-    if entry is reference:
+def _agreement(one: Solved, reference: Solved) -> dict[str, Any]:
+    """How far a case is from its reference, at stops that both have."""
+    if one is reference:
         return {"against": "", "difference": np.nan, "difference at": np.nan}
-    swept = "contraction" if entry.asked.case.path.kind == "isobaric" else "pressure"
-    ours, theirs = _valid_forces(entry), _valid_forces(reference)
-    common = sorted(ours.keys() & theirs.keys())
-    if not common:
-        return {"against": reference.asked.label, "difference": np.nan, "difference at": np.nan}
-    gaps: NDArray[np.float64] = np.abs([ours[stop] - theirs[stop] for stop in common])
-    worst = int(np.argmax(gaps))
+    gaps = (_valid(one) - _valid(reference)).abs().dropna()
     return {
         "against": reference.asked.label,
-        "difference": float(gaps[worst]) / _largest_force(reference),
-        "difference at": common[worst] if swept else np.nan,
+        "difference": gaps.max() / _largest_force(reference),
+        "difference at": gaps.idxmax() if len(gaps) else np.nan,
     }
 
 
-def _valid_forces(entry: Solved) -> dict[float, float]:
-    """Force, or contraction in units of the force's scale on isotonic paths, by stop."""
-    isotonic = entry.asked.case.path.kind == "isotonic"
-    values = entry.solution.states["contraction" if isotonic else "force"]
-    return {
-        stop: float(value)
-        for stop, value, status in zip(
-            entry.asked.case.path.stops, values, entry.solution.state_status, strict=False
-        )
-        if status in VALID
-    }
+def _valid(one: Solved) -> pd.Series:
+    """Force by stop; under a load contraction, which is a share already."""
+    kind, rows = one.asked.case.path.kind, one.at_stops
+    valid = rows.loc[rows["status"].isin(SHOWN), [kind.swept.key, kind.follows]]
+    return valid.set_index(kind.swept.key)[kind.follows]
 
 
-def _largest_force(entry: Solved) -> float:
-    """What a difference is a share of; isotonic paths are compared by contraction, as it is."""
-    if entry.asked.case.path.kind == "isotonic":
+def _largest_force(one: Solved) -> float:
+    """What a difference is a share of; of contractions 1."""
+    if one.asked.case.path.kind.follows != "force":
         return 1.0
-    force = np.abs(entry.solution.states["force"])
-    return float(np.nanmax(force)) if np.isfinite(force).any() else np.nan
-
-
-def _smallest(values: NDArray[np.float64]) -> float:
-    return float(np.nanmin(values)) if np.isfinite(values).any() else np.nan
+    return float(one.states["force"].abs().max())

@@ -7,10 +7,9 @@ import pandas as pd
 from scipy.optimize import brentq
 
 from solver.models.cylinder.mechanics import Cylinder, State
-from solver.record import Solution
-from solver.status import StateStatus
 from workflow.analyses.analysis import Solved
 from workflow.analyses.sensitivity.cases import CHECK, STEP, Normal, neighbours
+from workflow.data.states import GOOD
 from workflow.study.contents import Study
 
 SEED, SAMPLES = 20260101, 128  # samples: a power of two, times the number of inputs and two
@@ -48,17 +47,15 @@ def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
     return {"sensitivity": table(Normal.of(study), solved)}
 
 
-def outputs(isobaric: Solution, isometric: Solution) -> dict[str, float]:
-    """The results of both cases, NaN where a state is not valid."""
-
-    def state(solution: Solution, number: int, name: str) -> float:
-        good = solution.state_status[number] is StateStatus.CONVERGED
-        return float(solution.states[name][number]) if good else np.nan
-
+def outputs(isobaric: pd.DataFrame, isometric: pd.DataFrame) -> dict[str, float]:
+    """The results of the states of both cases, NaN where one is not valid."""
+    (at_stop, free), (_, threshold) = (
+        rows.where(rows["status"] == GOOD).to_dict("records") for rows in (isobaric, isometric)
+    )
     return {
-        "force": state(isobaric, 0, "force"),
-        "threshold_pressure": state(isometric, -1, "pressure"),
-        "free_contraction": state(isobaric, -1, "contraction"),
+        "force": at_stop["force"],
+        "threshold_pressure": threshold["pressure"],
+        "free_contraction": free["contraction"],
     }
 
 
@@ -68,7 +65,7 @@ def table(normal: Normal, solved: Sequence[Solved]) -> pd.DataFrame:
     for name, way, changes in neighbours(normal):
         by_model["cylinder"][name, way] = _by_cylinder(normal, changes)
         found = [s for s in solved if (s.asked.tags["input"], s.asked.tags["way"]) == (name, way)]
-        by_model[CHECK][name, way] = outputs(*(s.solution for s in found))
+        by_model[CHECK][name, way] = outputs(*(s.states for s in found))
     rows = [row for model, found in by_model.items() for row in _local(model, found, normal)]
     for name, ranges in ANALYSES.items():
         rows += _global(name, normal, ranges)

@@ -11,7 +11,7 @@ from workflow.analyses.threads import local
 from workflow.analyses.threads.cases import CONTRACTION
 from workflow.study.contents import Study
 
-COLUMNS = {  # of the record -> of the table
+COLUMNS = {  # of a state -> of the table
     "contraction": "contraction [1]",
     "force": "force [N]",
     "inner_diameter_inflated": "inner diameter [mm]",
@@ -61,23 +61,20 @@ def change_by_wall(solved: Sequence[Solved], contraction: float = CONTRACTION) -
     return rows[chosen].set_index("wall [mm]")["change [N]"].sort_index()
 
 
-def _rows(entry: Solved) -> pd.DataFrame:
-    states, case = entry.solution.states, entry.asked.case
-    rows = pd.DataFrame({name: states[key] for key, name in COLUMNS.items()})
-    rows["contraction [1]"] = case.path.stops  # exact, and also where nothing was reached
-    rows["status"] = [status.value for status in entry.solution.state_status]
-    rows["unknowns [1]"] = entry.solution.unknowns
+def _rows(one: Solved) -> pd.DataFrame:
+    rows = one.states[[*COLUMNS, "status"]].rename(columns=COLUMNS)
+    rows["unknowns [1]"] = one.solution.unknowns
     rows[STRESS] = np.nan
-    for state, fields in entry.solution.fields.items():
+    for state, fields in one.solution.fields.items():
         rows.loc[state, STRESS] = local.largest_stress(fields)
-    return _tagged(rows, entry)
+    return _tagged(rows, one)
 
 
-def _tension(entry: Solved) -> pd.DataFrame:
-    return _tagged(local.tension(entry), entry).assign(set="tension")
+def _tension(one: Solved) -> pd.DataFrame:
+    return _tagged(local.tension(one), one).assign(set="tension")
 
 
-def _tagged(rows: pd.DataFrame, entry: Solved) -> pd.DataFrame:
-    for tag, value in reversed(entry.asked.tags.items()):
+def _tagged(rows: pd.DataFrame, one: Solved) -> pd.DataFrame:
+    for tag, value in reversed(one.asked.tags.items()):
         rows.insert(0, tag, value)
     return rows

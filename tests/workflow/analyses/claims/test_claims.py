@@ -1,16 +1,17 @@
 """Every claim's verdict follows the data: reproduced where it holds, not where it does not."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
-import xarray as xr
 
-from workflow.analyses.claims.claim import STEPS, Data, Verdict
+from workflow.analyses.claims.claim import STEPS, Verdict
 from workflow.analyses.claims.factors import SILICONE, WALLS
 from workflow.analyses.claims.judge import CLAIMS, judge
 
-from .made_up import EQUATION, FORCE, group, isobaric, isometric, isotonic, stress, with_map
+from .made_up import EQUATION, FORCE, data, isobaric, isometric, isotonic, stress, with_map
 
 YES, PARTLY, NO = Verdict.REPRODUCED, Verdict.PARTLY, Verdict.NOT_REPRODUCED
 BY_NAME = {claim.name: claim for claim in CLAIMS}
@@ -63,13 +64,12 @@ def walls(nbr, silicone, quantity="force"):
     if quantity == "force":
         return isobaric({(m, "solid", 0.3): [f] for m, f in both.items()}, stops=(0.1,))
     curves = {(m, "solid", 200.0): {"contraction": [c]} for m, c in both.items()}
-    return xr.DataTree.from_dict({"isotonic": group("isotonic", curves, (0.3,))})
+    return data("isotonic", curves, (0.3,))
 
 
-def with_threads(tree, change):
+def with_threads(found, change):
     """The same with what single threads change of silicone's force, by thickness."""
-    data = xr.Dataset({"change": ("wall", np.array(change, dtype=float))}, {"wall": list(WALLS)})
-    return tree.assign(threads=xr.DataTree(data))
+    return replace(found, threads=pd.Series(change, list(WALLS), dtype=float))
 
 
 def pulled(p):
@@ -83,7 +83,7 @@ def s_curve(steepest, width=0.1):
 
 WALL_FALLS, SOFT_PEAK = [330, 274, 222, 170], [480, 500, 490, 485]
 CASES = [
-    # claim, dataset, verdict
+    # claim, states, verdict
     ("C1a", at_pressures(), YES),
     ("C1a", at_pressures(scale=lambda p: 0.3 / p), PARTLY),
     ("C1a", at_pressures(FORCES[::-1], scale=lambda p: 0.3 / p), NO),
@@ -211,9 +211,9 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "tree", "verdict"), CASES)
-def test_a_verdict_follows_the_data(name, tree, verdict):
-    found = judge(BY_NAME[name], Data(tree, "solid"))
+@pytest.mark.parametrize(("name", "found", "verdict"), CASES)
+def test_a_verdict_follows_the_data(name, found, verdict):
+    found = judge(BY_NAME[name], found)
     assert found.verdict is verdict, found.why
     assert math.isfinite(found.value)
     assert "nan" not in found.why
@@ -226,8 +226,8 @@ def test_every_claim_is_tested_both_ways(name):
 
 
 @pytest.mark.parametrize("name", BY_NAME)
-def test_a_claim_on_which_the_dataset_is_silent_is_not_testable(name):
-    found = judge(BY_NAME[name], Data(isobaric({("other", "solid", 0.3): FORCES}), "solid"))
+def test_a_claim_of_which_there_are_no_states_is_not_testable(name):
+    found = judge(BY_NAME[name], isobaric({("other", "solid", 0.3): FORCES}))
     assert found.verdict is Verdict.NOT_TESTABLE
     assert math.isnan(found.value)
     assert found.why
@@ -236,5 +236,5 @@ def test_a_claim_on_which_the_dataset_is_silent_is_not_testable(name):
 @pytest.mark.parametrize("name", ["C6a", "C7c", "C1a"])
 def test_states_that_did_not_converge_are_no_data(name):
     curves = {(m, "solid", p): FORCES for m in WALLS.values() for p in (0.2, 0.3, 0.4)}
-    tree = isobaric(curves, status="invalid_state")
-    assert judge(BY_NAME[name], Data(tree, "solid")).verdict is Verdict.NOT_TESTABLE
+    found = isobaric(curves, status="invalid_state")
+    assert judge(BY_NAME[name], found).verdict is Verdict.NOT_TESTABLE
