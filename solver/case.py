@@ -21,13 +21,15 @@ from solver.effects import (
     Rubber,
     Stretch,
     ThreadLaw,
+    Twist,
     Volume,
     active,
     check_carried,
     switches,
 )
-from solver.load_path import LoadPath
+from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
+from solver.memory import Memory
 from solver.models import MODELS
 from solver.numerics import KINDS, Numerics
 from solver.refusal import UnsolvableCase
@@ -45,6 +47,7 @@ class Case:
     Attributes
     ----------
     fields_at : stops of the path at which fields (deformed shape, stress) are recorded too
+    memory : of the rubber; only read where it can matter, in time
     numerics : what goes with the size of the muscle and was left out is filled in
 
     Raises
@@ -61,6 +64,7 @@ class Case:
     effects: Effects = field(default_factory=Effects)
     numerics: Numerics = field(default_factory=Numerics)
     fields_at: tuple[float, ...] = ()
+    memory: Memory | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "numerics", self.numerics.of(self.muscle))
@@ -88,6 +92,28 @@ class Case:
                 raise UnsolvableCase("fields_at", stop, f"stops of the path, {self.path.stops}")
         if self.fields_at and not MODELS[self.model].fields:
             raise UnsolvableCase("fields_at", self.fields_at, f"none: {self.model} has no fields")
+        if self.path.history is not None:
+            self._check_history()
+
+    def _check_history(self) -> None:
+        """Refuse what no model can have in time, or this one cannot."""
+        model, path = MODELS[self.model], self.path
+        if not model.in_time:
+            able = ", ".join(name for name in MODELS if MODELS[name].in_time)
+            raise UnsolvableCase("model", self.model, f"in time {able}")
+        if self.remembers and self.effects.twist is Twist.FREE:
+            allowed = "held with a memory, whose branches have no shear"
+            raise UnsolvableCase("twist", self.effects.twist, allowed)
+        slack = path.kind is PathKind.ISOMETRIC and min(path.stops) <= 0
+        if slack and model.crumples:
+            allowed = f"pressures > 0 at a held contraction: without, {self.model} has no wall"
+            raise UnsolvableCase("stops", min(path.stops), allowed)
+
+    @property
+    def remembers(self) -> bool:
+        """Whether the memory of the rubber matters."""
+        has = self.memory is not None and self.effects.rubber is Rubber.ELASTIC
+        return has and self.path.history is not None
 
     def as_dict(self) -> dict[str, Any]:
         """What the model reads, as plain values; ``from_dict`` reads it back."""
@@ -95,7 +121,7 @@ class Case:
         values: dict[str, Any] = {
             "model": self.model,
             "muscle": muscle,
-            "path": asdict(self.path),
+            "path": self.path.as_dict(),
         }
         parts, braided = MODELS[self.model].parts, self.muscle.braid is not None
         if not self.clamped:
@@ -115,6 +141,9 @@ class Case:
         if "numerics" in parts:
             read = self._read()
             values["numerics"] = {name: asdict(getattr(self.numerics, name)) for name in read}
+        if self.remembers:
+            assert self.memory is not None
+            values["memory"] = asdict(self.memory)
         if self.fields_at:
             values["fields_at"] = self.fields_at
         return values
@@ -126,8 +155,13 @@ class Case:
 
     @property
     def active_effects(self) -> list[str]:
-        """Names of the effects that are on (solver/effects.py)."""
-        return active(self.model, self.effects, braided=self.muscle.braid is not None)
+        """Names of the effects that are on (solver/effects.py), and of those in time."""
+        found = active(self.model, self.effects, braided=self.muscle.braid is not None)
+        history = self.path.history
+        found += ["memory"] * self.remembers
+        if history is not None:
+            found += ["mass"] * (history.mass > 0) + ["valve"] * (history.valve is not None)
+        return found
 
     @property
     def compressible(self) -> bool:
@@ -190,9 +224,11 @@ class Case:
         given = _filled(values)
         muscle = Muscle.from_dict(given.get("muscle"))
         parts: dict[str, Any] = {
-            name: build(kind, given.get(name), UnsolvableCase, name)
-            for name, kind in (("path", LoadPath), ("effects", Effects))
+            "path": LoadPath.from_dict(given.get("path")),
+            "effects": build(Effects, given.get("effects"), UnsolvableCase, "effects"),
         }
+        if "memory" in given:
+            parts["memory"] = build(Memory, given["memory"], UnsolvableCase, "memory")
         parts["rubber"] = rubber.from_dict(given.get("rubber"))
         if muscle.braid is None:
             parts["thread"] = None

@@ -101,7 +101,7 @@ def snaps(
     """
     path = case.path
     reached = np.flatnonzero(np.isfinite(solved[0]["force"][: len(path.stops)]))
-    if not reached.size or path.kind.by_way:  # more stops would be another way
+    if not reached.size or path.by_way:  # more stops would be another way
         return []
     if _only_bends(case, solved[0], onwards):
         return []

@@ -5,7 +5,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from solver import zero_force
+from solver import balance, zero_force
 from solver.case import Case
 from solver.load_path import CONTRACTION_LIMITS, PathKind
 from solver.record import Solution
@@ -48,6 +48,8 @@ def judged(
     if ended and case.path.zero_force and np.isfinite(states["force"][:count]).all():
         ended, aside = None, reason
     status = ended or case_status(each[:count], reason.startswith(LIMITS))
+    if status is CaseStatus.CONVERGED and (off := balance.unbalanced(case, states)):
+        status, reason = CaseStatus.UNBALANCED, off
     if status is CaseStatus.CONVERGED:
         reason = ""
     if status is CaseStatus.INVALID_STATE:

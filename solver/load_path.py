@@ -5,10 +5,13 @@ its stops; between them nothing is skipped, because hyperelastic states do not d
 Newton's method does.
 """
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from enum import IntEnum, StrEnum
+from typing import Any
 
-from geometry.refusal import is_number
+from geometry.refusal import build, is_number
+from solver.history import History, Valve
 from solver.refusal import UnsolvableCase
 
 RAMP_STEPS = 4  # a load is brought from zero to its value in so many waypoints
@@ -125,8 +128,8 @@ class LoadPath:
 
     With ``zero_force`` the state of zero force on the curve is looked for as well (on an
     isometric path the threshold pressure, on an isobaric one the free contraction;
-    solver/zero_force.py); it is the record's last state. Units by kind: contraction as a
-    fraction, pressure in MPa, load in N.
+    solver/zero_force.py); it is the record's last state. With a ``history`` the stops are passed in
+    time, and may turn round. Units by kind: contraction as a fraction, pressure in MPa, load in N.
 
     Raises
     ------
@@ -138,6 +141,7 @@ class LoadPath:
     held: float
     stops: tuple[float, ...]
     zero_force: bool = field(default=False)
+    history: History | None = None
 
     def __post_init__(self) -> None:
         if self.kind not in list(PathKind):
@@ -154,11 +158,63 @@ class LoadPath:
             for value in values:
                 _check(name, control, value)
         falls = any(b <= a for a, b in zip(self.stops, self.stops[1:], strict=False))
-        if falls and not self.kind.by_way:
+        if falls and not self.by_way:
             raise UnsolvableCase("stops", self.stops, "rising values, each given once")
         if self.zero_force and not self.kind.zero_force:
             allowed = f"an {' or '.join(ZERO_FORCE.values())} path"
             raise UnsolvableCase("zero_force", True, allowed)
+        if self.history is not None:
+            self._check_history(self.history)
+
+    def _check_history(self, history: History) -> None:
+        if self.zero_force:
+            allowed = "false in time: the way to no force is no part of the history"
+            raise UnsolvableCase("zero_force", True, allowed)
+        if len(history.times) != len(self.stops):
+            allowed = f"as many as stops, {len(self.stops)}"
+            raise UnsolvableCase("times", len(history.times), allowed)
+        if history.held is not None:
+            if len(history.held) != len(self.stops) or history.held[0] != self.held:
+                allowed = f"{len(self.stops)} values, the first {self.held:g}"
+                raise UnsolvableCase("held", list(history.held), allowed)
+            for value in history.held:
+                _check("held", self.kind.held, value)
+        controls = self.kind.held, self.kind.swept
+        if history.mass and Control.FORCE not in controls:
+            allowed = "0 where the length is prescribed; a mass on an isotonic path (kg)"
+            raise UnsolvableCase("mass", history.mass, allowed)
+        if history.valve is not None and self.kind.swept is not Control.PRESSURE:
+            allowed = "none where the pressure of the muscle is held"
+            raise UnsolvableCase("valve", history.valve.conductance, allowed)
+
+    @property
+    def by_way(self) -> bool:
+        """Whether states depend on the way to them."""
+        return self.kind.by_way or self.history is not None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values; of a path out of time without a history."""
+        values = asdict(self)
+        if self.history is None:
+            del values["history"]
+        return values
+
+    @classmethod
+    def from_dict(cls, values: object) -> "LoadPath":
+        """The path of a plain mapping as ``as_dict`` makes it."""
+        given = dict(values) if isinstance(values, Mapping) else values
+        if isinstance(given, dict) and given.get("history") is not None:
+            history = given["history"]
+            if isinstance(history, Mapping) and history.get("valve") is not None:
+                valve = build(Valve, history["valve"], UnsolvableCase, "path.history.valve")
+                history = {**history, "valve": valve}
+            given["history"] = build(History, history, UnsolvableCase, "path.history")
+        return build(cls, given, UnsolvableCase, "path")
+
+    @property
+    def start(self) -> "LoadPath":
+        """Of a path in time, the one to its first stop, out of time."""
+        return replace(self, stops=self.stops[:1], history=None)
 
     @property
     def units(self) -> dict[str, str]:

@@ -12,7 +12,7 @@ Layout, version 5
 /states      datasets of shape (state,) as in VARIABLES, attrs: units, long_name; and of
              texts: status; flags, words of solver/status.py with spaces between; note, a sentence.
              States are in the order of the path's stops, then that of zero force if asked for.
-             What was not reached is NaN.
+             What was not reached is NaN. Of a path in time there are those of IN_TIME too.
 /fields/<n>  of state n, where asked for. Membrane: meridian (node, 4) = R, Z, r, z [mm].
              Solid: corners (3 triangles, 4) = R, Z, r, z [mm] and stress (3 triangles, 4) =
              Cauchy rr, rz, zz, tt [MPa], three rows per triangle, discontinuous between them.
@@ -28,6 +28,7 @@ import hashlib
 import io
 import json
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
 from functools import cache
 from pathlib import Path
@@ -40,6 +41,7 @@ from geometry.files import atomic_write
 from solver import sources
 from solver.case import Case, digest
 from solver.declared import Declared
+from solver.load_path import LoadPath
 from solver.status import CaseStatus, Flag, StateStatus
 
 FILETYPE, LAYOUT = "muscle-case", 5
@@ -78,6 +80,16 @@ VARIABLES = {
     "iterations": ("1", "Newton iterations since the state before"),
     "cutbacks": ("1", "steps given up since the state before"),
 }
+IN_TIME = {  # beside them, of a path in time
+    "time": ("s", "time since the first stop"),
+    "work": ("N*mm", "work done on the muscle by its force and pressure since the first stop"),
+    "dissipated": ("N*mm", "energy dissipated in the muscle since the first stop"),
+}
+
+
+def variables(path: LoadPath) -> dict[str, tuple[str, str]]:
+    """Unit and long name of what is recorded of a state of a path."""
+    return VARIABLES | (IN_TIME if path.history is not None else {})
 
 
 class NoRecord(ValueError):
@@ -90,7 +102,7 @@ class Solution:
 
     Attributes
     ----------
-    states : arrays of shape (state,), as in VARIABLES; NaN where not reached
+    states : arrays of shape (state,), as in ``variables``; NaN where not reached
     flags, notes : of every state, beside its status; left out, there are no flags, and notes are
         the reason where a state was not reached
     fields : state number -> name -> array, as in the layout
@@ -117,9 +129,9 @@ class Solution:
         object.__setattr__(self, "notes", self.notes or missing)
 
 
-def unreached(count: int) -> dict[str, NDArray[np.float64]]:
+def unreached(count: int, names: Iterable[str] = VARIABLES) -> dict[str, NDArray[np.float64]]:
     """States of which none was reached."""
-    return {name: np.full(count, np.nan) for name in VARIABLES}
+    return {name: np.full(count, np.nan) for name in names}
 
 
 def write(path: Path, case: Case, solution: Solution) -> None:
@@ -148,7 +160,7 @@ def _write(file: Any, case: Case, solution: Solution) -> None:
     )
     _write_parameters(file.create_group("parameters"), case)
     states = file.create_group("states")
-    for name, (unit, long_name) in VARIABLES.items():
+    for name, (unit, long_name) in variables(case.path).items():
         data = states.create_dataset(name, data=solution.states[name])
         data.attrs.update(units=unit, long_name=long_name)
     words: dict[str, list[str]] = {
@@ -233,7 +245,9 @@ def _read(file: Any, size: int) -> tuple[Case, Solution]:
         log=file.attrs["log"],
         unknowns=int(file.attrs["unknowns"]),
         code=file.attrs["code"],
-        states={name: declared.dataset(states, name, "f", shape)[()] for name in VARIABLES},
+        states={
+            name: declared.dataset(states, name, "f", shape)[()] for name in variables(case.path)
+        },
         state_status=[StateStatus(text) for text in texts("status")],
         flags=[frozenset(map(Flag, text.split())) for text in texts("flags")],
         notes=texts("note"),

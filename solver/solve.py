@@ -18,7 +18,7 @@ from solver.effects import Volume
 from solver.judge import judged
 from solver.load_path import LoadPath, PathKind, Waypoint
 from solver.models import MODELS
-from solver.record import VARIABLES, Solution, unreached
+from solver.record import Solution, unreached, variables
 from solver.smoothing import marked
 from solver.status import CaseStatus, StateStatus, state_status
 from solver.zero_force import Search, limit_pressure
@@ -84,7 +84,8 @@ class _Solver:
 
         What lies behind an invalid state on its way is taken from another way, if that leads there.
         """
-        states, fields = solved = unreached(case.path.states), dict[int, States]()
+        names = variables(case.path)
+        states, fields = solved = unreached(case.path.states, names), dict[int, States]()
         count, lost, searched = len(case.path.stops), set[int](), None
         for way in case.path.ways():
             end = self._add(case, way, solved, lost)
@@ -130,7 +131,7 @@ class _Solver:
 
     def _add(self, case: Case, way: list[Waypoint], solved: Solved, lost: set[int]) -> "_End":
         """Follow a way, and add what it reaches for the first time or better to what is known."""
-        found, its_fields = unreached(case.path.states), dict[int, States]()
+        found, its_fields = unreached(case.path.states, variables(case.path)), dict[int, States]()
         end = self._walk(case, way, found, its_fields)
         states, fields = solved
         name, zero = case.path.kind.swept.variable, len(case.path.stops)
@@ -287,7 +288,7 @@ def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solut
     return Solution(
         status=status,
         reason=reason,
-        states=unreached(count),
+        states=unreached(count, variables(case.path)),
         state_status=[StateStatus.NOT_REACHED] * count,
         log=log,
     )
@@ -380,7 +381,7 @@ def _collect(
         table = files.read(work / f"fields_{number}.txt", largest_fields)
         if table is not None:
             fields[stop] = _fields(case.model, table)
-        for name in VARIABLES.keys() & row.keys():
+        for name in variables(case.path).keys() & row.keys():
             states[name][stop] = row[name]
     if len({len(table) for tables in fields.values() for table in tables.values()}) > 1:
         raise ValueError("fields of different sizes")

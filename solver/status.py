@@ -33,6 +33,7 @@ class CaseStatus(StrEnum):
     LIMIT_POINT = "limit_point"  # no equilibrium further on; the reason names its kind
     STALLED = "stalled"  # Newton needs steps below the smallest; why is not known
     INVALID_STATE = "invalid_state"  # every stop reached, but not every state is valid
+    UNBALANCED = "unbalanced"  # every stop reached, but steps of time too long for their energy
     MESH_FAILED = "mesh_failed"
     TIMEOUT = "timeout"
     SOLVER_ERROR = "solver_error"

@@ -45,6 +45,8 @@ class Model:
     solve : of a model in Python, from a case to its solution; imports late
     fuller, lacks : model of which it is a simplification, and the effect (or step of
         workflow/plan/effect_costs.csv) that it leaves out; without either it is not weighed
+    in_time : whether it follows a history: a rubber with a memory, a mass, a valve
+    crumples : whether it has no state of a shortened muscle without pressure
     only_for : effect without which it is not weighed, as it is dear
     """
 
@@ -69,6 +71,8 @@ class Model:
     solve: Callable[[Any], Any] | None = None
     fuller: str = ""
     lacks: str = ""
+    in_time: bool = False
+    crumples: bool = False
     only_for: str = ""
 
     @property

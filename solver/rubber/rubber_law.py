@@ -176,6 +176,11 @@ class RubberLaw(ABC):
         return self.shear_modulus / 2
 
     @property
+    def branch(self) -> tuple[float, float]:
+        """C10 and C01 of a branch with a memory whose share is 1 [MPa]: neo-Hookean."""
+        return self.shear_modulus / 2, 0.0
+
+    @property
     @abstractmethod
     def initial_slope(self) -> float:
         """Of the energy by each principal stretch at rest; - this ln J takes it off [MPa]."""

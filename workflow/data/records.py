@@ -57,8 +57,17 @@ def curves_of_scene(
     """The curves of a scene, with the stops that it asks for (its cases may have more)."""
     places = plan.scenes.get(scene, {})
     solved = read(plan, places.values(), folder, partial=partial)
-    stops = plan.study.scenes[scene].swept if places else ()
-    return [_curve(plan, place, key, solved, stops) for place, key in places.items()]
+    asked = plan.study.scenes[scene]
+    return [
+        _curve(
+            plan,
+            place,
+            key,
+            solved,
+            plan.cases[key].case.path.stops if asked.in_time else asked.swept,
+        )
+        for place, key in places.items()
+    ]
 
 
 def _curve(
@@ -98,7 +107,7 @@ def not_solved(case: Case) -> tuple[Case, Solution]:
     return case, Solution(
         status=CaseStatus.NOT_SOLVED,
         reason="there is no record of it yet",
-        states=record.unreached(count),
+        states=record.unreached(count, record.variables(case.path)),
         state_status=[StateStatus.NOT_REACHED] * count,
     )
 

@@ -99,7 +99,11 @@ class Table:
 
     @classmethod
     def of(cls, curves: Sequence[Curve], muscles: Mapping[str, StudiedMuscle]) -> "Table":
-        """The states of solved curves: at the stops that are wanted, and of zero force."""
+        """The states of solved curves: at the stops that are wanted, and of zero force.
+
+        Curves in time have groups of their own (workflow/data/in_time.py).
+        """
+        curves = [curve for curve in curves if not curve.place.scene]
         named = sorted({curve.place.muscle for curve in curves})
         return cls(
             pd.DataFrame([_of_muscle(muscles[name]) for name in named], named, list(OF_MUSCLE)),

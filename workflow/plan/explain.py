@@ -23,6 +23,8 @@ def lines(plan: Plan) -> Iterator[str]:
         yield ""
         yield f"{name}: {len(set(places.values()))} cases"
         yield f"  wants    {_wish(scene, choice)}"
+        if scene.in_time:
+            yield from _memories(plan, scene)
         yield f"  regimes  {', '.join(model_choice.regimes(plan.study, scene))}"
         yield from _models(scene, choice, model_choice.estimates(plan.study, scene))
         for model, case in cases.items():
@@ -33,15 +35,50 @@ def lines(plan: Plan) -> Iterator[str]:
 def _wish(scene: Scene, choice: Choice) -> str:
     assert scene.path is not None
     swept = scene.swept
-    usual = PathKind(scene.path).follows
+    usual = PathKind(scene.kind).follows
     held = ", ".join(f"{value:g}" for value in scene.held)
     given = "" if scene.tolerance else " (if not said otherwise)"
     forced = "".join(f", {effect} {state}" for effect, state in sorted(scene.effects.items()))
     return (
-        f"{', '.join(scene.quantities) or usual}; {scene.path}, {HELD_KEY[scene.path]} {held}, "
-        f"{SWEPT_KEY[scene.path]} {swept[0]:g} to {swept[-1]:g} in {_stops(len(swept))}; "
+        f"{', '.join(scene.quantities) or usual}; {scene.path}, {HELD_KEY[scene.kind]} {held}, "
+        f"{SWEPT_KEY[scene.kind]} {swept[0]:g} to {swept[-1]:g} {_course(scene)}; "
         f"within {100 * choice.tolerance:g} %{given}{forced}"
     )
+
+
+def _course(scene: Scene) -> str:
+    """How the swept control goes."""
+    if scene.cycle is not None:
+        asked = scene.cycle
+        wave = "table" if asked.table else asked.wave
+        times = asked.period or (asked.table or ((0.0, 0.0),))[-1][:1]
+        periods = ", ".join(f"{time:g}" for time in times)
+        return (
+            f"and back ({wave}), {asked.cycles} cycles of {periods} s in {asked.samples} steps, "
+            f"{asked.start} at first"
+        )
+    if scene.transient is not None:
+        given = scene.transient
+        valve = " through a valve" if given.valve else ""
+        return (
+            f"of the supply{valve}, {given.duration:g} s in steps of {given.step:g} s, "
+            f"mass {given.mass:g} kg, {given.start} at first"
+        )
+    return f"in {_stops(len(scene.swept))}"
+
+
+def _memories(plan: Plan, scene: Scene) -> Iterator[str]:
+    """What the rubbers of a scene in time remember."""
+    for name in scene.muscles:
+        memory = plan.study.muscles[name].memory
+        if memory is None:
+            said = "none; its material has no memory, so without mass and valve nothing is lost"
+        else:
+            said = (
+                f"{len(memory.times)} branches of {memory.times[0]:g} to {memory.times[-1]:g} s, "
+                f"{100 * sum(memory.shares):.3g} % of the long-term stiffness"
+            )
+        yield f"  memory   {name}: {said}"
 
 
 def _models(scene: Scene, choice: Choice, estimates: Sequence[Estimate]) -> Iterator[str]:

@@ -23,14 +23,14 @@ def error_factor(study: Study, scene: Scene, measured: MeasuredEffects, regime: 
     study.
     """
     assert scene.path is not None  # a scene without has no curves
-    effect = measured[regime, scene.path, EVERYTHING]
-    if scene.path == "isotonic":
+    effect = measured[regime, scene.kind, EVERYTHING]
+    if scene.kind == "isotonic":
         return 1.0
     found = []
     for name in scene.muscles:
         muscle = study.muscles[name]
         for held in scene.held:
-            if scene.path == "isobaric":
+            if scene.kind == "isobaric":
                 contraction, pressure = min(scene.swept, key=abs), held
                 loads = held / effect.held
             else:

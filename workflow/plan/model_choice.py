@@ -159,14 +159,14 @@ def regimes(study: Study, scene: Scene) -> Iterator[str]:
     if any(stiff):
         yield "stiff threads"
     assert scene.path is not None
-    lowest = min(scene.held) if scene.path == "isobaric" else max(scene.swept)
+    lowest = min(scene.held) if scene.kind == "isobaric" else max(scene.swept)
     if lowest < 0.15:
         yield "low pressure"
     shortest = {
         "isobaric": max(scene.swept) > 0.15,
-        "isometric": scene.path == "isometric" and max(scene.held) > 0.15,
-        "isotonic": scene.path == "isotonic" and min(scene.held) < 100,
-    }[scene.path]
+        "isometric": scene.kind == "isometric" and max(scene.held) > 0.15,
+        "isotonic": scene.kind == "isotonic" and min(scene.held) < 100,
+    }[scene.kind]
     if shortest:
         yield "high contraction"
 
@@ -189,7 +189,7 @@ def _estimate(
         if rung.only_for:
             seconds.append(measured[(regime, *SMEARED)].seconds_with)
             continue
-        last = measured[regime, scene.path, rung.step]
+        last = measured[regime, scene.kind, rung.step]
         seconds.append(last.seconds_without if rung.above else last.seconds_with)
     mesh_error = share_of(rung.model, Effects(), replace(Numerics(), **MESHES[rung.mesh]))
     return Estimate(rung, max(errors), mesh_error, max(seconds), missing, refused)
@@ -205,7 +205,7 @@ def _error(
     missing = False
     at: Rung | None = rung
     while at is not None:
-        effect = measured[regime, scene.path, at.step]
+        effect = measured[regime, scene.kind, at.step]
         change = _change(study, scene, effect, factor)
         if at.above is None:
             total += change / ORDER
@@ -246,7 +246,7 @@ def _change(study: Study, scene: Scene, effect: MeasuredEffect, factor: float) -
 def _judged(scene: Scene) -> list[str]:
     """Columns of effect_costs.csv that tell the error of what a scene wants."""
     assert scene.path is not None
-    names = [PathKind(scene.path).follows]
+    names = [PathKind(scene.kind).follows]
     if {"inner_diameter", "outer_diameter", "volume"} & set(scene.quantities):
         names.append("diameter")
     if "threshold_pressure" in scene.quantities:
@@ -265,6 +265,8 @@ def refusal(model: str, scene: Scene) -> str:
     for quantity in scene.quantities:
         if model not in QUANTITIES[quantity]:
             return f"gives no {quantity}"
+    if scene.in_time and not MODELS[model].in_time:
+        return "knows no time"
     try:
         effects = readable(model, switched(Effects(), scene.effects))
     except UnsolvableCase as error:

@@ -18,6 +18,7 @@ from solver.case import Case, digest
 from solver.load_path import ZERO_FORCE, LoadPath, PathKind
 from solver.models import MODELS
 from workflow.plan import model_choice
+from workflow.study import in_time
 from workflow.study.contents import Study, Variant
 from workflow.study.errors import Findings, StudyError
 from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
@@ -28,19 +29,31 @@ FIELDS = {"stress", "deformed_shape"}
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """Where a curve stands in the dataset."""
+    """Where a curve stands in the dataset.
+
+    Attributes
+    ----------
+    kind : of its path, where the group does not say it: in time
+    scene : that it is of, if it is in time
+    period : of its cycles [s], 0 if there are none
+    """
 
     group: str
     muscle: str
     model: str
     variant: str
     held: float
+    kind: str = ""
+    scene: str = ""
+    period: float = 0.0
 
     def __str__(self) -> str:
         """As in messages: ``dmsp20 solid isobaric 0.3 MPa``."""
-        held = PathKind(self.group).held.text(self.held)
+        held = PathKind(self.kind or self.group).held.text(self.held)
         variant = "" if self.variant == "default" else f" {self.variant}"
-        return f"{self.muscle} {self.model}{variant} {self.group} {held}"
+        period = f", {self.period:g} s" if self.period else ""
+        scene = f" ({self.scene}{period})" if self.scene else ""
+        return f"{self.muscle} {self.model}{variant} {self.group} {held}{scene}"
 
 
 def mesh_file(case: Case) -> str | None:
@@ -118,7 +131,7 @@ class _Wish:
 
     def planned(self) -> PlannedCase:
         path = self.case.path
-        stops = path.stops if path.kind.by_way else tuple(sorted(self.stops))
+        stops = path.stops if path.by_way else tuple(sorted(self.stops))
         path = replace(path, stops=stops, zero_force=self.zero_force)
         case = replace(self.case, path=path, fields_at=tuple(sorted(self.fields_at)))
         return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)))
@@ -210,9 +223,30 @@ def _curves(
         for model in choice.models:
             for label, variant in choice.variants.items():
                 for held in scene.held:
-                    place = Place(scene.path, muscle, model, label, held)
-                    with findings.gathering():
-                        yield place, _case(study, name, scene, place, variant)
+                    for place, path in _paths(study, name, scene, muscle, model, label, held):
+                        with findings.gathering():
+                            yield place, _case(study, name, scene, place, variant, path)
+
+
+def _paths(
+    study: Study, name: str, scene: Scene, muscle: str, model: str, label: str, held: float
+) -> Iterator[tuple[Place, LoadPath]]:
+    """Paths of a scene at a held value: one, or in time one for every period."""
+    assert scene.path is not None
+    if scene.in_time:
+        for period, path in in_time.paths(scene, held).items():
+            yield Place(scene.path, muscle, model, label, held, scene.kind, name, period), path
+        return
+    place = Place(scene.path, muscle, model, label, held)
+    has_zero = MODELS[model].threshold or place.group == "isobaric"
+    values = {
+        "kind": scene.path,
+        "held": held,
+        "stops": scene.swept,
+        "zero_force": has_zero and bool(ZERO_FORCE.keys() & set(scene.quantities)),
+    }
+    named = {"held": HELD_KEY[scene.path], "stops": SWEPT_KEY[scene.path]}
+    yield place, study.source.checked(("scenes", name), LoadPath, values, named)
 
 
 def _check_models(study: Study, name: str, scene: Scene, choice: model_choice.Choice) -> None:
@@ -222,30 +256,19 @@ def _check_models(study: Study, name: str, scene: Scene, choice: model_choice.Ch
         found = {e.rung.model: e.refused for e in choice.estimates}
     reasons = [f"{model} {reason}" for model, reason in found.items() if reason]
     if reasons:
-        key = "effects" if scene.effects else "quantities"
+        key = "effects" if scene.effects else "quantities" if scene.quantities else "models"
         allowed = f"what one model can have; here {'; '.join(reasons)}"
         raise study.source.refuse(("scenes", name, key), getattr(scene, key), allowed)
 
 
-def _case(study: Study, name: str, scene: Scene, place: Place, variant: Variant) -> Case:
+def _case(
+    study: Study, name: str, scene: Scene, place: Place, variant: Variant, path: LoadPath
+) -> Case:
     """The case that a scene asks for at a place."""
     muscle, effects = study.muscles[place.muscle], variant.effects
     if scene.effects:
         effects = model_choice.readable(place.model, effects)
     keys, checked = ("scenes", name), study.source.checked
-    assert scene.path is not None
-    has_zero = MODELS[place.model].threshold or place.group == "isobaric"
-    path = checked(
-        keys,
-        LoadPath,
-        {
-            "kind": scene.path,
-            "held": place.held,
-            "stops": scene.swept,
-            "zero_force": has_zero and bool(ZERO_FORCE.keys() & set(scene.quantities)),
-        },
-        {"held": HELD_KEY[scene.path], "stops": SWEPT_KEY[scene.path]},
-    )
     case = checked(
         keys,
         Case,
@@ -258,8 +281,9 @@ def _case(study: Study, name: str, scene: Scene, place: Place, variant: Variant)
             "effects": effects,
             "numerics": variant.numerics,
             "fields_at": scene.swept if FIELDS.intersection(scene.quantities) else (),
+            "memory": muscle.memory if scene.in_time else None,
         },
-        {"model": "models"},
+        {"model": "models", "stops": SWEPT_KEY[scene.kind]},
     )
     _check_mesh(study, place, variant)
     return case
@@ -301,6 +325,6 @@ def _check_mesh(study: Study, place: Place, variant: Variant) -> None:
 
 def _identity(case: Case) -> str:
     """What a case has in common with all that can be merged with it."""
-    stops = case.path.stops if case.path.kind.by_way else (0.0,)
-    path = LoadPath(kind=case.path.kind, held=case.path.held, stops=stops)
+    stops = case.path.stops if case.path.by_way else (0.0,)
+    path = replace(case.path, stops=stops, zero_force=False)
     return replace(case, path=path, fields_at=()).canonical()

@@ -10,7 +10,7 @@ from geometry.muscle import Braid, Muscle
 from geometry.refusal import Refusal
 from solver import net
 from solver.load_path import ZERO_FORCE, LoadPath
-from workflow.study import figure_needs, units
+from workflow.study import figure_needs, in_time, units
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError, choices, shown
 from workflow.study.schema import (
@@ -49,10 +49,19 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
         return
     if asked.path is None:
         unused = ("pressure", "contraction", "load", "models", "effects", "tolerance", "quantities")
+        unused += ("cycle", "transient")
         for key in [key for key in unused if getattr(asked, key)][:1]:
             value = _as_written(getattr(asked, key))
+            value = "a mapping" if key in ("cycle", "transient") else value
             yield source.refuse((*keys, key), value, "this key is not used without a path")
         return
+    if asked.in_time:
+        yield from _in_time(source, keys, asked)
+        return
+    for key in ("cycle", "transient"):
+        if getattr(asked, key) is not None:
+            allowed = f"this key is not used on an {asked.path} path"
+            yield source.refuse((*keys, key), "a mapping", allowed)
     factors = [HELD_KEY[asked.path], SWEPT_KEY[asked.path]]
     for key in ("pressure", "contraction", "load"):
         value = _as_written(getattr(asked, key))
@@ -65,6 +74,18 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
             yield source.refuse((*keys, "quantities"), quantity, allowed)
     if all(getattr(asked, key) is not None for key in factors):
         yield from _values(source, keys, asked)
+
+
+def _in_time(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
+    """A scene in time, whose quantities are those of every state."""
+    for quantity in asked.quantities:
+        if quantity in ZERO_FORCE or quantity in ("stress", "deformed_shape"):
+            allowed = f"this quantity only out of time, not on a {asked.path} path"
+            yield source.refuse((*keys, "quantities"), quantity, allowed)
+    high = [p for p in asked.pressure or () if p > HIGHEST]
+    if high:
+        yield source.refuse((*keys, "pressure"), high[0], f"pressures up to {HIGHEST:g} (MPa)")
+    yield from in_time.check(source, keys, asked)
 
 
 def _as_written(value: Any) -> Any:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from geometry.muscle import Muscle
 from solver.effects import Effects
 from solver.material import Thread
+from solver.memory import Memory
 from solver.numerics import Numerics
 from solver.rubber.rubber_law import RubberLaw
 from workflow.study.limits import Limits
@@ -20,6 +21,7 @@ class StudiedMuscle:
     material: str
     rubber: RubberLaw
     thread: Thread | None
+    memory: Memory | None = None  # of the rubber, in time
     limits: Limits = field(default_factory=Limits)  # of its materials
     reference: tuple[str, ...] = ()  # names of the force maps that are of this muscle
 

@@ -8,6 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import fields
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Union, get_args
 
 from pydantic import (
@@ -24,6 +25,7 @@ from pydantic_core import PydanticCustomError
 
 from geometry.refusal import is_count
 from solver.effects import EFFECTS, Effects
+from solver.history import Start, Wave
 from solver.load_path import ZERO_FORCE, PathKind
 from solver.models import MODELS
 from solver.numerics import KINDS
@@ -56,6 +58,8 @@ QUANTITIES = {  # models that can give it
 }
 FORCE_MAPS = ("festo_musclesim", "martens2017")  # read by workflow/data/reference.py
 MOST_THREADS = 10_000  # more is a typing error
+IN_TIME = ("cycle", "transient")  # paths beside those of PathKind
+KIND_OF_HELD = {kind.held.key: kind.value for kind in PathKind}
 HELD_KEY = {kind.value: kind.held.key for kind in PathKind}
 SWEPT_KEY = {kind.value: kind.swept.key for kind in PathKind}
 
@@ -166,12 +170,51 @@ class Entry(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
 
+def _numbers(value: object) -> tuple[object, ...]:
+    if not isinstance(value, list) or not value:
+        raise refusal("a list of at least one number")
+    return tuple(value)
+
+
+def _rows(value: object) -> tuple[tuple[float, float], ...]:
+    """Rows of a table, whose times do not fall; two of one time are a jump."""
+    allowed = "a list of at least two rows [time, value], their times rising from 0 (s)"
+    rows = value if isinstance(value, list) else []
+    pairs = [tuple(row) for row in rows if isinstance(row, list) and len(row) == 2]
+    if len(pairs) < 2 or len(pairs) != len(rows):
+        raise refusal(allowed)
+    if not all(is_possible(number) for row in pairs for number in row):
+        raise refusal(f"{allowed}; every number {POSSIBLE}")
+    falls = any(b[0] < a[0] for a, b in pairwise(pairs))
+    if pairs[0][0] != 0 or pairs[-1][0] <= 0 or falls:
+        raise refusal(allowed)
+    return tuple((float(time), float(number)) for time, number in pairs)
+
+
+List = Annotated[tuple[Number, ...], BeforeValidator(_numbers)]
+Rows = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_rows)]
+Positive = Annotated[Number, Field(gt=0)]
+Count = Annotated[Whole, Field(gt=0, le=10_000)]
+
+
+class MemoryEntry(Entry):
+    """What of a rubber's stress relaxes: a flat spectrum, or shares and times of branches."""
+
+    per_decade: Number | None = None
+    from_: Number | None = Field(default=None, alias="from")  # s
+    to: Number | None = None  # s
+    shares: List | None = None
+    times: List | None = None  # s
+    reference_time: Number | None = None  # s
+
+
 class MaterialEntry(Entry):
     """A rubber; each law adds its parameters."""
 
     law: str
     kappa: Number = 1000.0
     stretch_limit: Number | None = None
+    memory: MemoryEntry | None = None
 
 
 def _numbers(value: object) -> tuple[object, ...]:
@@ -287,11 +330,53 @@ class LimitsEntry(Entry):
     memory: Annotated[Whole, Field(gt=0, le=10**7)] = 2000  # MB
 
 
+class ValveEntry(Entry):
+    """A valve before a muscle (solver/history.py)."""
+
+    conductance: Number  # mm3/(s MPa)
+    critical_ratio: Number = 0.3
+    exponent: Number = 1.0
+    dead_volume: Number = 0.0  # mm3
+
+
+class HistoryEntry(Entry):
+    """What paths in time have in common."""
+
+    held: str
+    start: _one_of(*Start) = Start.RELAXED.value
+    preload: Number = 0.0  # s
+
+
+class CycleEntry(HistoryEntry):
+    """A control that goes to and fro."""
+
+    held: _one_of(*KIND_OF_HELD)
+    wave: _one_of(*Wave) = Wave.TRIANGLE.value
+    table: Rows | None = None  # s and the swept control, of one cycle; instead of a wave
+    period: Values | None = None  # s, one curve each
+    cycles: Count = 3
+    samples: Count = 100  # steps of a cycle
+
+
+class TransientEntry(HistoryEntry):
+    """A muscle that moves a mass, or is filled through a valve."""
+
+    held: _one_of("load", "contraction") = "load"
+    supply: Rows  # s and MPa: of the valve, or without one of the muscle
+    load: Rows | None = None  # s and N, where it changes
+    mass: Number = 0.0  # kg
+    valve: ValveEntry | None = None
+    duration: Positive  # s
+    step: Positive  # s
+
+
 class Scene(Entry):
     """The cases of one figure; without a path it has none and shows the muscles themselves."""
 
     muscles: Names
-    path: _one_of(*PathKind) | None = None
+    path: _one_of(*PathKind, *IN_TIME) | None = None
+    cycle: CycleEntry | None = None
+    transient: TransientEntry | None = None
     pressure: Values | None = None  # MPa
     contraction: Values | None = None  # fraction
     load: Values | None = None  # N
@@ -302,14 +387,29 @@ class Scene(Entry):
     quantities: _some_of(*QUANTITIES) = ()
 
     @property
+    def in_time(self) -> bool:
+        """Whether its curves have a history."""
+        return self.path in IN_TIME
+
+    @property
+    def kind(self) -> str:
+        """What is held and what swept, as a PathKind; also in time."""
+        entry = {"cycle": self.cycle, "transient": self.transient}.get(self.path)
+        return self.path if entry is None else KIND_OF_HELD[entry.held]
+
+    @property
     def held(self) -> tuple[float, ...]:
         """Values of the factor that is held, one curve each."""
-        return getattr(self, HELD_KEY[self.path])
+        return getattr(self, HELD_KEY[self.kind])
 
     @property
     def swept(self) -> tuple[float, ...]:
-        """Stops along each curve."""
-        return getattr(self, SWEPT_KEY[self.path])
+        """Stops along each curve; in time those between which it goes."""
+        given = getattr(self, SWEPT_KEY[self.kind])
+        if given is not None or not self.in_time:
+            return given
+        table = self.cycle.table if self.cycle is not None else self.transient.supply
+        return tuple(sorted({value for _, value in table}))
 
 
 if TYPE_CHECKING:

@@ -17,10 +17,11 @@ from geometry.muscle import Braid, Muscle
 from geometry.refusal import Refusal
 from solver.effects import Effects
 from solver.material import Thread
+from solver.memory import Memory
 from solver.numerics import KINDS, Numerics, Spread
 from solver.rubber import LAWS
 from solver.rubber.rubber_law import LEAST_KAPPA, RubberLaw
-from workflow.study import checks, fit, units
+from workflow.study import checks, fit, in_time, units
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices, shown
 from workflow.study.limits import Limits
@@ -80,7 +81,12 @@ def load(path: Path | str, findings: Findings | None = None) -> Study:
     file = source.validated(found)
     rubbers: dict[str, RubberLaw] = {}
     limits: dict[str, Limits] = {}
+    memories: dict[str, Memory] = {}
     for name, material in file.materials.items():
+        with found.gathering():
+            if material.memory is not None:
+                keys = ("materials", name, "memory")
+                memories[name] = in_time.memory(source, keys, material.memory)
         with found.gathering():
             rubbers[name] = _rubber(source, found, name, material)
         with found.gathering():
@@ -95,7 +101,8 @@ def load(path: Path | str, findings: Findings | None = None) -> Study:
     muscles: dict[str, StudiedMuscle] = {}
     for name in file.muscles:
         with found.gathering():
-            muscles[name] = resolved.built(name)
+            made = resolved.built(name)
+            muscles[name] = replace(made, memory=memories.get(made.material))
     study = Study(
         source=source,
         muscles=muscles,
@@ -133,7 +140,7 @@ def _fit(study: Study, name: str) -> CalibrationEntry:
 def _rubber(source: Source, found: Findings, name: str, entry: MaterialEntry) -> RubberLaw:
     """The rubber of an entry; a bulk modulus that was left out is not to blame."""
     keys = ("materials", name)
-    law, values = LAWS[entry.law], entry.model_dump(exclude={"stretch_limit", "law"})
+    law, values = LAWS[entry.law], entry.model_dump(exclude={"stretch_limit", "law", "memory"})
     refused = list(law.out_of_range(values))
     for refusal in refused:
         found.add(source.refuse((*keys, refusal.field), refusal.value, refusal.allowed))

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar, root
+from scipy.optimize import OptimizeResult, minimize_scalar, root
 
 from solver import continuity
 from solver.case import Case
@@ -36,6 +36,11 @@ NAMES = {  # of controls, as solver/path/newton.idp writes them
 
 def solve(case: Case) -> Solution:
     """The curve of a case."""
+    if case.path.history is not None:
+        from solver.models.cylinder import in_time
+
+        states, reason, unknowns = in_time.follow(case)
+        return judged(case, states, reason=reason, unknowns=unknowns)
     cylinder = Cylinder(case)
     states, reason, searched = _curve(cylinder)
     cuts = continuity.snaps(case, (states, {}), lambda finer: (_curve(Cylinder(finer))[0], {}))
@@ -62,18 +67,18 @@ def _curve(
     return states, reason, searched
 
 
-def _control(cylinder: Cylinder, kind: Control, state: State) -> float:
+def control(cylinder: Cylinder, kind: Control, state: State) -> float:
     """Value of a control, as a share of its size for this muscle."""
     return {
         Control.CONTRACTION: 1 - state.lz,
         Control.PRESSURE: state.pressure,
         Control.FORCE: state.force,
         Control.VOLUME: volume(cylinder, state),
-    }[kind] / _scale(cylinder, kind)
+    }[kind] / scale(cylinder, kind)
 
 
-def _scale(cylinder: Cylinder, kind: Control) -> float:
-    """What ``_control`` is a share of."""
+def scale(cylinder: Cylinder, kind: Control) -> float:
+    """What ``control`` is a share of."""
     area = math.pi * cylinder.inner**2
     return {
         Control.CONTRACTION: 1.0,
@@ -95,12 +100,12 @@ def _follow(
     for point in way:
         kinds = point.first, point.second
         targets = np.array([point.first_target, point.second_target])
-        scales = np.array([_scale(cylinder, kind) for kind in kinds])
-        at, reached = _walk(cylinder, kinds, targets / scales, at)
+        scales = np.array([scale(cylinder, kind) for kind in kinds])
+        at, reached = walk(cylinder, kinds, targets / scales, at)
         if curve is not None and curve.holds(at):
             curve.points.append(curve.point(at))
         if not reached:
-            reason = _limit(cylinder, kinds, targets / scales, at)
+            reason = limit(cylinder, kinds, targets / scales, at)
             break
         if point.stop is not None:
             _record(cylinder, states, point.stop, at)
@@ -124,8 +129,8 @@ class _Branch:
     def holds(self, at: Array) -> bool:
         """Whether a state is on the curve."""
         held = self.search.held
-        value = _control(self.cylinder, held, self.cylinder.state(at))
-        return abs(value - self.search.still / _scale(self.cylinder, held)) < 1e-9
+        value = control(self.cylinder, held, self.cylinder.state(at))
+        return abs(value - self.search.still / scale(self.cylinder, held)) < 1e-9
 
     def point(self, at: Array) -> Point[Array]:
         """A state with what the search needs of it."""
@@ -143,21 +148,21 @@ class _Branch:
     def walk(self, start: Point[Array], x: float) -> Point[Array]:
         """To x; the last state on the way if that ends before."""
         goal = [
-            value / _scale(self.cylinder, kind)
+            value / scale(self.cylinder, kind)
             for kind, value in ((self.search.held, self.search.still), (self.search.swept, x))
         ]
         kinds = self.search.held, self.search.swept
-        return self.point(_walk(self.cylinder, kinds, np.array(goal), start.position)[0])
+        return self.point(walk(self.cylinder, kinds, np.array(goal), start.position)[0])
 
     def polish(self, start: Point[Array]) -> Point[Array] | None:
         """To no force."""
-        held = self.search.still / _scale(self.cylinder, self.search.held)
+        held = self.search.still / scale(self.cylinder, self.search.held)
         kinds = self.search.held, Control.FORCE
-        at, reached = _walk(self.cylinder, kinds, np.array([held, 0.0]), start.position)
+        at, reached = walk(self.cylinder, kinds, np.array([held, 0.0]), start.position)
         return self.point(at) if reached else None
 
 
-def _walk(
+def walk(
     cylinder: Cylinder, kinds: tuple[Control, Control], goal: Array, at: Array
 ) -> tuple[Array, bool]:
     """From some unknowns to those whose controls are at ``goal``, in as many steps as needed.
@@ -165,17 +170,15 @@ def _walk(
     Gives the last unknowns on the way, and whether it came to its end. No step is long: a far root
     may be of another branch, as when a balloon snaps.
     """
-    start = _values(cylinder, kinds, at)
+    start = values(cylinder, kinds, at)
     end = np.append(goal, np.zeros(cylinder.free))
     done, step = 0.0, 1.0
     while done < 1:
         share = min(done + step, 1.0)
         target = start + share * (end - start)
         with np.errstate(all="ignore"):
-            found = root(lambda x, t=target: _values(cylinder, kinds, x) - t, at, tol=1e-13)
-        positive = found.x[1] > 0 and (cylinder.rigid or found.x[0] > 0)
-        near = np.max(np.abs(found.x - at)) < LONGEST_STEP
-        if np.max(np.abs(found.fun)) < 1e-11 and positive and near:
+            found = root(lambda x, t=target: values(cylinder, kinds, x) - t, at, tol=1e-13)
+        if is_near(cylinder, found, at):
             at, done, step = found.x, share, 2 * step
         else:
             step /= 2
@@ -184,31 +187,38 @@ def _walk(
     return at, True
 
 
-def _values(cylinder: Cylinder, kinds: tuple[Control, Control], x: Array) -> Array:
+def is_near(cylinder: Cylinder, found: OptimizeResult, at: Array) -> bool:
+    """Whether a root is one, of a tube, and not far from some unknowns."""
+    positive = found.x[1] > 0 and (cylinder.rigid or found.x[0] > 0)
+    near = np.max(np.abs(found.x - at)) < LONGEST_STEP
+    return bool(np.max(np.abs(found.fun)) < 1e-11 and positive and near)
+
+
+def values(cylinder: Cylinder, kinds: tuple[Control, Control], x: Array) -> Array:
     """The controls at some unknowns, then the torque where twist is free; as shares."""
     state = cylinder.state(x)
     torque = state.torque / (cylinder.modulus * cylinder.inner**3)
-    return np.array([_control(cylinder, k, state) for k in kinds] + [torque] * cylinder.free)
+    return np.array([control(cylinder, k, state) for k in kinds] + [torque] * cylinder.free)
 
 
-def _limit(cylinder: Cylinder, kinds: tuple[Control, Control], goal: Array, at: Array) -> str:
+def limit(cylinder: Cylinder, kinds: tuple[Control, Control], goal: Array, at: Array) -> str:
     """Why there is no way from the unknowns ``at`` to the controls ``goal``.
 
     The branch is followed by its length: where the control that is moved has an extremum, it is
     named with its value.
     """
-    here = _values(cylinder, kinds, at)
+    here = values(cylinder, kinds, at)
     moving = int(np.argmax(np.abs(goal - here[:2])))
     sense = math.copysign(1.0, goal[moving] - here[moving])
     held = [k for k in range(len(here)) if k != moving]
-    unit = sense * _scale(cylinder, kinds[moving])
+    unit = sense * scale(cylinder, kinds[moving])
 
     def along(start: Array, tangent: Array, length: float) -> Array | None:
         """The unknowns at a length of the branch from ``start``."""
 
         def off(x: Array) -> Array:
             return np.append(
-                (_values(cylinder, kinds, x) - here)[held], tangent @ (x - start) - length
+                (values(cylinder, kinds, x) - here)[held], tangent @ (x - start) - length
             )
 
         with np.errstate(all="ignore"):
@@ -218,11 +228,11 @@ def _limit(cylinder: Cylinder, kinds: tuple[Control, Control], goal: Array, at: 
 
     def moved(x: Array | None) -> float:
         """The moving control, so that it rises towards its goal."""
-        return -math.inf if x is None else sense * float(_values(cylinder, kinds, x)[moving])
+        return -math.inf if x is None else sense * float(values(cylinder, kinds, x)[moving])
 
     last, before = at, None
     for _ in range(ARC_STEPS):
-        rows = derivatives(lambda x: _values(cylinder, kinds, x), at)
+        rows = derivatives(lambda x: values(cylinder, kinds, x), at)
         if not np.isfinite(rows).all():
             break
         tangent = np.linalg.svd(rows[held])[2][-1]  # along it the held controls do not change
@@ -265,12 +275,12 @@ def _smoothing(cylinder: Cylinder, at: Array) -> tuple[float, float]:
         return 0.0, 0.0
     assert case.thread is not None
     here, kinds = cylinder.state(at), (Control.CONTRACTION, Control.PRESSURE)
-    goal = np.array([_control(cylinder, kind, here) for kind in kinds])
+    goal = np.array([control(cylinder, kind, here) for kind in kinds])
     forces = []
     for share in (SHARP, 2 * SHARP):
         slack = replace(case.numerics.slack, width=share * case.numerics.slack.width)
         sharp = Cylinder(replace(case, numerics=replace(case.numerics, slack=slack)))
-        found, reached = _walk(sharp, kinds, goal, at)
+        found, reached = walk(sharp, kinds, goal, at)
         forces.append(sharp.state(found).force if reached else math.nan)
     width = case.numerics.slack.width_of(case.thread)
     return here.force - forces[0], (forces[1] - forces[0]) / (SHARP * width)

@@ -21,6 +21,7 @@ from solver import rubber
 from solver.case import INCOMPRESSIBLE, Case
 from solver.effects import Rubber, Stretch, Twist, Wall
 from solver.material import Thread
+from solver.models.cylinder.wall_memory import WallMemory
 from solver.threads import thread_law
 
 Array = NDArray[np.float64]
@@ -64,6 +65,11 @@ class Cylinder:
             self.rubber = rubber.from_dict(rubber.anything() | INCOMPRESSIBLE)
         else:
             self.modulus = case.rubber.load_scale
+        self.memory: WallMemory | None = None
+        if case.remembers:
+            assert case.memory is not None
+            self.memory = WallMemory(case.memory, case.rubber.branch, self.measure)
+            self.measure = case.memory.long_term * self.measure
         lead = muscle.braid.lead if muscle.braid else 1.0
         self.angles = np.arctan(2 * math.pi * self.layers / lead)
         self.senses = np.array([1.0, -1.0])[: len(self.layers)]
@@ -117,6 +123,10 @@ class Cylinder:
             total += float(np.sum(length * share))
         return total
 
+    def hoop(self, r: float, lz: float) -> Array:
+        """Hoop stretch of the points of the wall."""
+        return self._hoop(self.radii, r, lz)
+
     def _hoop(self, radii: Array, r: float, lz: float) -> Array:
         """Hoop stretch at reference radii."""
         return np.asarray(np.sqrt(r**2 + (radii**2 - self.inner**2) / lz) / radii)
@@ -135,6 +145,9 @@ class Cylinder:
         by_a, by_b, by_shear = self.rubber.slopes(a, b, shear)
         torque = np.sum(self.measure * 2 * radii**2 * twist * by_shear)
         by_a, by_b = self.measure * by_a, self.measure * by_b
+        if self.memory is not None:
+            over_a, over_b = self.memory.slopes(a, b)
+            by_a, by_b = by_a + self.memory.measure * over_a, by_b + self.memory.measure * over_b
         if threads and len(self.layers):
             axial, hoop = self._along_threads(r, lz, twist)
             per_square = self._tension(np.hypot(axial, hoop))

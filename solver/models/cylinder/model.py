@@ -28,6 +28,7 @@ MODEL = Model(
         "stiffness",
         "twist",
     ),
+    in_time=True,
     solve=solve,
     fuller="membrane",
     lacks="end_caps",

@@ -18,5 +18,10 @@ class MooneyRivlin(InvariantLaw):
         """Energy and its derivatives W1, W2 by the invariants [MPa]."""
         return self.c10 * (i1 - 3) + self.c01 * (i2 - 3), self.c10, self.c01
 
+    @property
+    def branch(self) -> tuple[float, float]:
+        """C10 and C01 of a branch with a memory: those of the law [MPa]."""
+        return self.c10, self.c01
+
 
 LAW = MooneyRivlin

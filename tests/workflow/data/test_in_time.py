@@ -1,0 +1,201 @@
+"""Scenes in time: from their keys over plan and records to groups of the dataset."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from solver import record
+from solver.history import Start
+from workflow.data import dataset, records
+from workflow.plan import explain
+from workflow.plan.plan import read
+from workflow.study.errors import StudyError
+
+STUDY = """\
+materials:
+  nbr:
+    c10: 0.345083
+    c01: 0.083805
+    memory: {per_decade: 0.06, from: 1e-2, to: 10, reference_time: 60}
+  listed: {c10: 0.345083, c01: 0.083805, memory: {shares: [0.2, 0.1], times: [10, 1]}}
+muscles:
+  one:
+    inner_diameter: 20
+    wall_thickness: 2
+    length: 300
+    layer_depths: [0.3, 0.9]
+    threads: 60
+    lead: 144
+    thread_stiffness: 315
+    material: nbr
+scenes:
+  loops:
+    path: cycle
+    muscles: [one]
+    cycle: {held: pressure, period: [4, 40], cycles: 1, samples: 8}
+    pressure: [0.2, 0.3]
+    contraction: [0, 0.2]
+    models: [cylinder]
+  own:
+    path: cycle
+    muscles: [one]
+    cycle:
+      held: load
+      table: [[0, 0.1], [1, 0.3], [2, 0.1]]
+      cycles: 2
+      samples: 4
+      start: unloaded
+      preload: 5
+    load: [100]
+    models: [cylinder]
+  drop:
+    path: transient
+    muscles: [one]
+    load: [49]
+    transient:
+      supply: [[0, 0], [0, 0.3], [1, 0.3]]
+      load: [[0, 49], [0.004, 49], [0.004, 60], [1, 60]]
+      mass: 5
+      duration: 0.01
+      step: 0.002
+      valve: {conductance: 1e7, dead_volume: 1000}
+    models: [cylinder]
+  curve:
+    path: isobaric
+    muscles: [one]
+    pressure: [0.3]
+    contraction: [0, 0.2]
+    models: [cylinder]
+"""
+
+
+def plan_of(tmp_path, old="", new=""):
+    assert old in STUDY
+    path = tmp_path / "study.yaml"
+    path.write_text(STUDY.replace(old, new))
+    return read(path)
+
+
+@pytest.fixture(scope="module")
+def solved(tmp_path_factory, solve_case):
+    folder = tmp_path_factory.mktemp("time")
+    plan = plan_of(folder)
+    for key, planned in plan.cases.items():
+        record.write(folder / f"{key}.h5", planned.case, solve_case(planned.case))
+    return plan, records.curves_of_study(plan, folder)
+
+
+def test_a_case_for_each_period_and_held_value(solved):
+    plan = solved[0]
+    places = list(plan.scenes["loops"])
+    assert [(place.held, place.period) for place in places] == [
+        (0.2, 4),
+        (0.2, 40),
+        (0.3, 4),
+        (0.3, 40),
+    ]
+    assert str(places[0]) == "one cylinder cycle 0.2 MPa (loops, 4 s)"
+    case = plan.cases[plan.scenes["loops"][places[0]]].case
+    assert case.path.stops == (0, 0.05, 0.1, 0.15, 0.2, 0.15, 0.1, 0.05, 0)
+    assert case.path.history.times[:3] == (0, 0.5, 1)
+    assert case.memory.shares == (0.06,) * 4
+    assert case.memory.reference_time == 60
+
+
+def test_a_table_is_gone_through_in_every_cycle(solved):
+    plan = solved[0]
+    (key,) = plan.scenes["own"].values()
+    path = plan.cases[key].case.path
+    assert path.kind == "isotonic"
+    assert path.stops == (0.1, 0.2, 0.3, 0.2, 0.1, 0.2, 0.3, 0.2, 0.1)
+    assert path.history.times == tuple(0.5 * k for k in range(9))
+    assert (path.history.start, path.history.preload) == (Start.UNLOADED, 5)
+
+
+def test_a_supply_jumps_and_a_load_too(solved):
+    plan = solved[0]
+    (key,) = plan.scenes["drop"].values()
+    path = plan.cases[key].case.path
+    assert path.stops == (0, *[0.3] * 5)
+    assert path.history.held == (49, 49, 49, 60, 60, 60)
+    assert path.history.valve.dead_volume == 1000
+    assert path.history.mass == 5
+
+
+def test_a_curve_out_of_time_knows_no_memory(solved):
+    plan = solved[0]
+    (key,) = plan.scenes["curve"].values()
+    assert "memory" not in plan.cases[key].case.as_dict()
+
+
+def test_groups_have_a_dimension_time(solved):
+    plan, curves = solved
+    tree = dataset.build(curves, plan.study.muscles)
+    assert set(tree["cycle"].children) == {"loops_4s", "loops_40s", "own"}
+    assert set(tree["transient"].children) == {"drop"}
+    loops = tree["cycle/loops_4s"].to_dataset()
+    assert loops["force"].dims == ("muscle", "model", "variant", "pressure", "time")
+    np.testing.assert_allclose(loops.time, np.arange(0, 4.5, 0.5))
+    one = loops.sel(muscle="one", model="cylinder", variant="default", pressure=0.3)
+    assert one.force.values[2] > 0
+    assert one.dissipated.values[-1] > 0
+    assert one.dissipated.attrs["units"] == "N*mm"
+    assert set(loops.cycle.values) == {1}
+    assert loops.period == 4
+    assert set(tree["cycle/own"].to_dataset().cycle.values) == {1, 2}
+    assert len(tree["states"].to_dataset().row) == 2  # those out of time
+
+
+def test_groups_are_written_and_read(solved, tmp_path):
+    plan, curves = solved
+    drops = [curve for curve in curves if curve.place.scene == "drop"]
+    tree = dataset.build(drops, plan.study.muscles)
+    dataset.write(tree, tmp_path / "dataset.nc")
+    with xr.open_dataset(tmp_path / "dataset.nc", group="transient/drop") as found:
+        np.testing.assert_array_equal(found.force, tree["transient/drop"].to_dataset().force)
+        assert found.time.attrs["units"] == "s"
+
+
+def test_explain_says_how_and_what_is_remembered(solved):
+    text = "\n".join(explain.lines(solved[0]))
+    assert "contraction 0 to 0.2 and back (triangle), 1 cycles of 4, 40 s in 8 steps" in text
+    assert "one: 4 branches of 0.01 to 10 s, 24 % of the long-term stiffness" in text
+    assert "of the supply through a valve, 0.01 s in steps of 0.002 s, mass 5 kg" in text
+
+
+CYCLE = "cycle: {held: pressure, period: [4, 40], cycles: 1, samples: 8}\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("per_decade: 0.06, ", "", "memory.per_decade is missing"),
+        ("per_decade: 0.06", "shares: [0.1], per_decade: 0.06", "memory.per_decade"),
+        ("to: 10,", "to: 1e-3,", "memory.to = 0.001 is refused"),
+        ("shares: [0.2, 0.1]", "shares: [0.2, -0.1]", "memory.shares = -0.1"),
+        ("shares: [0.2, 0.1]", "shares: 0.2", "a list of at least one number"),
+        (f"    {CYCLE}", "", "scenes.loops.cycle is missing"),
+        (CYCLE, "transient: {supply: [[0, 0], [1, 1]], duration: 1, step: 1}\n", "transient"),
+        ("period: [4, 40], ", "", "cycle.period is missing"),
+        ("held: pressure, ", "held: volume, ", "cycle.held = 'volume'"),
+        (
+            "contraction: [0, 0.2]\n    models: [cylinder]\n  own",
+            "models: [cylinder]\n  own",
+            "scenes.loops.contraction is missing",
+        ),
+        ("table: [[0, 0.1], [1, 0.3], [2, 0.1]]", "table: [[1, 0.1], [1, 0.3]]", "rising from 0"),
+        ("table: [[0, 0.1], [1, 0.3], [2, 0.1]]", "table: [[0, 0.1], [1, -0.3]]", "pressure >= 0"),
+        ("load: [100]", "load: [100]\n    pressure: [0.3]", "is not used on this cycle path"),
+        ("mass: 5", "mass: -5", "transient.mass = -5"),
+        ("duration: 0.01", "duration: 1000", "at most 20000 steps"),
+        ("conductance: 1e7", "conductance: 0", "1 dm^3/(s bar) is 1e7"),
+        ("models: [cylinder]\n  own", "models: [geometric]\n  own", "geometric knows no time"),
+        ("path: isobaric", f"path: isobaric\n    {CYCLE}", "not used on an isobaric path"),
+        ("samples: 8}", "samples: 8}\n    quantities: [free_contraction]", "only out of time"),
+    ],
+    ids=str,
+)
+def test_what_is_refused(tmp_path, old, new, said):
+    with pytest.raises(StudyError) as refused:
+        plan_of(tmp_path, old, new)
+    assert said in str(refused.value), str(refused.value)
