@@ -94,6 +94,7 @@ def test_the_vocabulary():
         "limit_point",
         "stalled",
         "invalid_state",
+        "unbalanced",
         "mesh_failed",
         "timeout",
         "solver_error",

@@ -36,11 +36,6 @@ NAMES = {  # of controls, as solver/path/newton.idp writes them
 
 def solve(case: Case) -> Solution:
     """The curve of a case."""
-    if case.path.history is not None:
-        from solver.models.cylinder import in_time
-
-        states, reason, unknowns = in_time.follow(case)
-        return judged(case, states, reason=reason, unknowns=unknowns)
     cylinder = Cylinder(case)
     states, reason, searched = _curve(cylinder)
     cuts = continuity.snaps(case, (states, {}), lambda finer: (_curve(Cylinder(finer))[0], {}))

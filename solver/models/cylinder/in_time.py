@@ -15,27 +15,27 @@ from scipy.optimize import OptimizeResult, root
 from solver.case import Case
 from solver.effects import Rubber
 from solver.history import AMBIENT, TONNE_PER_KG, Rate, Start
+from solver.judge import judged
 from solver.load_path import Control, Waypoint
 from solver.models.cylinder import curve
 from solver.models.cylinder.mechanics import Cylinder, State
 from solver.models.cylinder.observe import observed, volume
 from solver.models.cylinder.wall_memory import principal
-from solver.record import unreached, variables
+from solver.record import Solution, unreached, variables
 
 Array = NDArray[np.float64]
 SHORTEST = 1 / 1024  # share of a step between stops
 JACOBIAN_STEP, CHORDS, EXACT = 1e-7, 8, 1e-12
 
 
-def follow(case: Case) -> tuple[dict[str, Array], str, int]:
-    """States at the stops, why they ended early, and the number of unknowns."""
+def solve(case: Case) -> Solution:
+    """The curve of a case in time."""
     run = _Run(case)
     states = unreached(case.path.states, variables(case.path))
     reason = run.begin()
-    if reason:
-        return states, reason, run.cylinder.unknowns
-    run.record(states, 0)
-    for stop in range(1, len(case.path.stops)):
+    if not reason:
+        run.record(states, 0)
+    for stop in range(1, 0 if reason else len(case.path.stops)):
         if not run.go_to(stop):
             state = run.state
             reason = (
@@ -44,7 +44,7 @@ def follow(case: Case) -> tuple[dict[str, Array], str, int]:
             )
             break
         run.record(states, stop)
-    return states, reason, run.cylinder.unknowns
+    return judged(case, states, reason=reason, unknowns=run.cylinder.unknowns)
 
 
 def _root(off: Callable[[Array], Array], guess: Array) -> OptimizeResult:

@@ -7,9 +7,9 @@ from solver.record import Solution
 
 def solve(case: Case) -> Solution:
     """The curve of a case."""
-    from solver.models.cylinder import curve
+    from solver.models.cylinder import curve, in_time
 
-    return curve.solve(case)
+    return curve.solve(case) if case.path.history is None else in_time.solve(case)
 
 
 MODEL = Model(
