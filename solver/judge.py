@@ -44,9 +44,9 @@ def judged(
     far = {k for k in _too_far(case, states) if each[k] in valid}
     for k in lost | far:
         each[k] = StateStatus.INVALID_STATE
-    aside = ""  # what ended the search for zero force when the stops were done
+    zero_ended = ""  # why the search for zero force ended, where all stops were reached
     if ended and case.path.zero_force and np.isfinite(states["force"][:count]).all():
-        ended, aside = None, reason
+        ended, zero_ended = None, reason
     status = ended or case_status(each[:count], reason.startswith(LIMITS))
     if status is CaseStatus.CONVERGED and (off := balance.unbalanced(case, states)):
         status, reason = CaseStatus.UNBALANCED, off
@@ -62,7 +62,7 @@ def judged(
         notes[k] = LOST if k in lost else TOO_FAR.format(100 * states["contraction"][k])
     if case.path.zero_force:
         each[-1], note = zero_force.judge(case, states, each[-1], searched)
-        notes[-1] = aside or note or notes[-1]
+        notes[-1] = zero_ended or note or notes[-1]
         if each[-1] in valid and _among_invalid(case, states, each):
             each[-1], notes[-1] = StateStatus.INVALID_STATE, LOST
     return Solution(

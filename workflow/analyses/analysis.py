@@ -9,6 +9,8 @@ cases.py      ``cases(study) -> list[AnalysisCase]``: what to solve, from the mu
 table.py      ``tables(study, solved) -> {name: DataFrame}``
 figures.py    ``draw(solved, tables) -> {name: Figure}``, if it has figures
 files.py      ``texts(study, tables) -> {name: str}``, if it has files of its own
+readers.py    ``for_readers(rows, page) -> DataFrame | None``: what a page of the report shows of
+              its own table, if not all of it
 caption.rst   what its page in the report says
 
 It runs as ``snakemake --cores 2 <name>``.
@@ -35,7 +37,7 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).parent
 PACKAGE = "workflow.analyses"
-PARTS = ("analysis", "cases", "table", "figures", "files")
+PARTS = ("analysis", "cases", "table", "figures", "files")  # of its results
 PAPERS = ("dmsp20", "dmsp20_silicone")  # muscles that most are about; the first is the paper's own
 
 

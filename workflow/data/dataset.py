@@ -71,7 +71,7 @@ def build(
         }
     for group in labelled.groups(table):
         if group.filled >= FILLED or group.bytes < LARGE:
-            groups[group.kind] = group.dataset()
+            groups[group.kind.value] = group.dataset()
     tree = xr.DataTree.from_dict(dict(sorted(groups.items())))
     tree.attrs.update(
         title="States of pneumatic muscles" + (f" of the study {study}" if study else ""),

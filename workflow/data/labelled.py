@@ -26,7 +26,6 @@ from solver.load_path import PathKind
 from solver.models import MODELS
 from solver.status import CaseStatus, StateStatus
 from workflow.data.states import CONTROLS, OF_CURVE, OF_MUSCLE, OF_STATE, STOP, Table, attributes
-from workflow.study.schema import HELD_KEY, SWEPT_KEY
 
 EMPTY = {"status": StateStatus.NOT_ASKED.value, "flags": "", "note": ""}  # where no state is
 NO_CURVE = {"case": "", "case_status": CaseStatus.NOT_ASKED.value, "case_reason": ""}
@@ -37,7 +36,8 @@ class Group:
     """The curves of one kind of path, with their axes; its size is known before it is made."""
 
     def __init__(self, table: Table, kind: str) -> None:
-        self.kind, self.held, self.swept = kind, HELD_KEY[kind], SWEPT_KEY[kind]
+        self.kind = PathKind(kind)
+        self.held, self.swept = self.kind.held.key, self.kind.swept.key
         self.muscles = table.muscles
         self.curves = table.curves[table.curves["path"] == kind]
         states = table.states[table.states["curve"].isin(self.curves.index)]
@@ -98,7 +98,7 @@ class Group:
             texts = _spread(self.shape[:-1], curves, self.curves[name], empty)
             data[name] = (dims[:-1], texts, attributes(OF_CURVE[name]))
         if len(self.zeros):
-            variable, column = PathKind(self.kind).zero_force, self.swept
+            variable, column = self.kind.zero_force, self.swept
             long_name = f"{column} of zero force"
             values = _spread(self.shape[:-1], at(self.zeros), self.zeros[column], np.nan)
             data[variable] = (dims[:-1], values, attributes((CONTROLS[column][0], long_name)))
@@ -140,9 +140,9 @@ def _spread(
 
 def groups(table: Table) -> Iterable[Group]:
     """The groups that have curves."""
-    return [Group(table, kind) for kind in HELD_KEY if (table.curves["path"] == kind).any()]
+    return [Group(table, kind) for kind in PathKind if (table.curves["path"] == kind).any()]
 
 
 def tree(table: Table) -> xr.DataTree:
     """All states of a table at their labels, however many places stay empty."""
-    return xr.DataTree.from_dict({group.kind: group.dataset() for group in groups(table)})
+    return xr.DataTree.from_dict({group.kind.value: group.dataset() for group in groups(table)})

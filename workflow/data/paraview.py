@@ -26,15 +26,21 @@ THREADS = ("thread_stretch_1", "thread_stretch_2", "thread_density_1", "thread_d
 
 
 def files(plan: "Plan") -> dict[str, tuple[str, int]]:
-    """File name -> case and state, for all fields that the scenes of a study ask for."""
+    """File name -> case and state, for all fields that the scenes of a study ask for.
+
+    Of a stop that a path comes to more than once the name has the number of the state as well.
+    """
     found = {}
     for places in plan.scenes.values():
         for place, key in places.items():
             case = plan.cases[key].case
-            for stop in case.fields_at:
-                names = (place.muscle, place.model, place.variant, place.group)
-                file = "_".join([*names, f"{place.held:g}", f"{stop:g}"])
-                found[f"{file}.vtu"] = (key, case.path.stops.index(stop))
+            stops = case.path.stops
+            for state, stop in enumerate(stops):
+                if stop in case.fields_at:
+                    names = [place.muscle, place.model, place.variant, place.group]
+                    names += [f"{place.held:g}", f"{stop:g}"]
+                    names += [f"{state}"] * (stops.count(stop) > 1)
+                    found["_".join(names) + ".vtu"] = (key, state)
     return found
 
 

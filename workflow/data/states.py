@@ -26,7 +26,7 @@ from workflow.data.reference import ForceMap
 from workflow.plan import mesh_error
 from workflow.plan.plan import Plan
 from workflow.study.contents import StudiedMuscle
-from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
+from workflow.study.schema import Scene
 
 STOP, ZERO = "stop", "zero force"  # kinds of states
 CONTROLS = {  # that a path prescribes; of a state at a stop the decimals of the study file
@@ -311,8 +311,9 @@ def numbered(scene: Scene, table: Table, quantities: Iterable[str]) -> pd.DataFr
     assert scene.path is not None
     shown = found["status"].isin(SHOWN)
     columns = {"source": found["model"]} | {n: found[n] for n in ("muscle", "variant", "point")}
-    for key in (HELD_KEY[scene.path], SWEPT_KEY[scene.path]):
-        columns[CONTROL[key]] = found[key]
+    kind = PathKind(scene.path)
+    for control in (kind.held, kind.swept):
+        columns[CONTROL[control.key]] = found[control.key]
     for name in quantities:
         columns.setdefault(COLUMN[name], found[name].where(shown))
         if name in WITH_ERROR:

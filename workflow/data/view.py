@@ -6,10 +6,10 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
+from solver.load_path import PathKind
 from solver.status import StateStatus
 from workflow.data import dataset, labelled
 from workflow.data.states import Table
-from workflow.study.schema import HELD_KEY, SWEPT_KEY
 
 DATASET = "results/dataset.nc"
 
@@ -52,7 +52,7 @@ def curve(
     KeyError
         If the dataset has no such curve, with what there is.
     """
-    kinds = {HELD_KEY[kind]: kind for kind in HELD_KEY}
+    kinds = {kind.held.key: kind for kind in PathKind}
     if len(held) != 1 or not held.keys() <= kinds.keys():
         raise KeyError(f"one of {', '.join(kinds)} must be given, not {', '.join(held) or 'none'}")
     ((control, value),) = held.items()
@@ -66,7 +66,7 @@ def curve(
         .dataset()
         .squeeze(["muscle", "model", "variant", control])
     )
-    return found.sel({SWEPT_KEY[kinds[control]]: found.status != StateStatus.NOT_ASKED.value})
+    return found.sel({kinds[control].swept.key: found.status != StateStatus.NOT_ASKED.value})
 
 
 def _read(path: str | Path) -> Table:

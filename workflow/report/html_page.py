@@ -1,19 +1,21 @@
 """Pages of the report: a caption, pictures and tables as one HTML file that needs nothing else.
 
-A picture as wide as the page and as tall as it has to be; a table with a line per row. Of the
-scorecard a page shows the claims of its figure, so that every figure says how far it agrees.
+A picture as wide as the page and as tall as it has to be; a table with a line per row, or with what
+its analysis says that readers of this page want of it (workflow/analyses/<name>/readers.py).
 """
 
 import base64
 import html
 from collections.abc import Iterable
+from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
 from geometry.files import atomic_write
 
+ANALYSES = Path(__file__).parents[1] / "analyses"
+DATA = ("workflow/analyses/*/readers.py", "workflow/analyses/*/__init__.py")
 STYLE = """
 body { font: 14px/1.4 system-ui, sans-serif; margin: 1em; color: #222; max-width: 75em }
 img { display: block; max-width: 100%; height: auto; margin: 1em 0 }
@@ -27,7 +29,6 @@ td.number { text-align: right; white-space: nowrap }
 .not-reproduced { background: #f8dcd8 }
 .not-testable { background: #eee }
 """
-SCORECARD = "claims"  # stem of its file
 
 
 def write(
@@ -38,10 +39,9 @@ def write(
     parts += [picture(path) for path in pictures]
     for path in tables:
         rows = pd.read_csv(path, keep_default_na=False, na_values=[""])
-        if path.stem == SCORECARD:
-            rows = claims(rows, None if output.stem == SCORECARD else output.stem)
-        if len(rows) or path.stem != SCORECARD:
-            parts.append(table(rows, path.stem))
+        shown = for_readers(path.stem, rows, output.stem)
+        if shown is not None:
+            parts.append(table(shown, path.stem))
     document = (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}'
         f"</title>\n<style>{STYLE}</style></head>\n<body><h1>{html.escape(title)}</h1>\n"
@@ -50,6 +50,16 @@ def write(
     )
     with atomic_write(output) as beside:
         beside.write_text(document, encoding="utf-8")
+
+
+def for_readers(name: str, rows: pd.DataFrame, page: str) -> pd.DataFrame | None:
+    """What a page shows of a table; None if nothing of it belongs there."""
+    if not (ANALYSES / name / "readers.py").exists():
+        return rows
+    chosen: pd.DataFrame | None = import_module(f"workflow.analyses.{name}.readers").for_readers(
+        rows, page
+    )
+    return chosen
 
 
 def picture(path: Path) -> str:
@@ -71,45 +81,6 @@ def table(rows: pd.DataFrame, title: str) -> str:
         f"<table><caption>{html.escape(heading)}</caption>\n<thead><tr>{head}</tr></thead>\n"
         f"<tbody>{body}</tbody></table>"
     )
-
-
-def claims(rows: pd.DataFrame, figure: str | None = None) -> pd.DataFrame:
-    """The scorecard for readers; of one figure only, if it is given."""
-    chosen = rows if figure is None else rows[rows["figure"] == figure]
-    return pd.DataFrame(
-        {
-            "claim": f"{row['id']}: {row['claim']}",
-            "figure": _text(row["figure"]),
-            "paper": _with_unit(str(row["paper"]), row["unit"]),
-            "ours": ours(row),
-            "EA 50 to 650 N": _range(row["lowest_by_EA"], row["highest_by_EA"]),
-            "verdict": row["verdict"],
-            "why": row["why"],
-        }
-        for row in chosen.to_dict("records")
-    )
-
-
-def ours(row: dict[Any, Any]) -> str:
-    """Our number with what it may be off by discretisation."""
-    if pd.isna(row["ours"]):
-        return ""
-    text = f"{row['ours']:.3g}"
-    if row["discretisation"] > 0.001 * abs(row["ours"]):
-        text += f" ± {row['discretisation']:.1g}"
-    return _with_unit(text, row["unit"])
-
-
-def _with_unit(text: str, unit: str) -> str:
-    return f"{text} {unit}" if text.lstrip("-")[:1].isdigit() and unit != "1" else text
-
-
-def _range(low: float, high: float) -> str:
-    return "" if pd.isna(low) or low == high else f"{low:.3g} to {high:.3g}"
-
-
-def _text(value: object) -> str:
-    return "" if isinstance(value, float) and pd.isna(value) else str(value)
 
 
 def _cell(value: object) -> str:

@@ -30,7 +30,7 @@ NAMES = {  # of controls, as solver/path/newton.idp writes them
     Control.CONTRACTION: "contraction",
     Control.PRESSURE: "pressure [MPa]",
     Control.FORCE: "force [N]",
-    Control.VOLUME: "volume [mm3]",
+    Control.VOLUME: "volume [mm^3]",
 }
 
 

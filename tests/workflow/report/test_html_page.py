@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from workflow.analyses.claims import readers
 from workflow.report import html_page
 
 SCORECARD = '''\
@@ -75,6 +76,6 @@ def test_other_tables_are_shown_whole(written):
 
 def test_every_number_of_ours_is_readable():
     row = {"discretisation": np.nan, "unit": "N"}
-    assert html_page.ours({"ours": -98.7654, **row}) == "-98.8 N"
-    assert html_page.ours({"ours": np.nan, **row}) == ""
-    assert html_page.claims(pd.DataFrame({"figure": []}), "fig04").empty
+    assert readers.ours({"ours": -98.7654, **row}) == "-98.8 N"
+    assert readers.ours({"ours": np.nan, **row}) == ""
+    assert readers.for_readers(pd.DataFrame({"figure": []}), "fig04") is None

@@ -136,6 +136,21 @@ class Claim:
     judge: Callable[[Data], Finding]
 
 
+class Claims(list[Claim]):
+    """Claims in their order, each written above the function that judges it."""
+
+    def add(
+        self, name: str, figure: str, text: str, *, paper: str, unit: str = "1"
+    ) -> Callable[[Callable[[Data], Finding]], Callable[[Data], Finding]]:
+        """Add a claim; ``paper`` is its number or what it says, ``unit`` that of ours."""
+
+        def added(judge: Callable[[Data], Finding]) -> Callable[[Data], Finding]:
+            self.append(Claim(name, figure, text, unit, paper, judge))
+            return judge
+
+        return added
+
+
 def values(curve: pd.Series, at: ArrayLike) -> Array:
     """Numbers of a curve at some stops.
 

@@ -5,10 +5,9 @@ import pandas as pd
 
 from workflow.analyses.claims.claim import (
     GEOMETRIC,
-    PRESSURE,
     STEPS,
     Array,
-    Claim,
+    Claims,
     Data,
     Finding,
     Missing,
@@ -24,8 +23,10 @@ from workflow.data.deviation import RELATIVE, SHARE
 PRESSURES = (0.2, 0.3, 0.4)  # MPa
 MEAN = -0.099  # deviation of the paper's model from the manufacturer's map
 MAP = "festo_musclesim"
+CLAIMS = Claims()
 
 
+@CLAIMS.add("C1a", "fig04", "force falls with contraction and rises with pressure", paper="always")
 def falls_and_rises(data: Data) -> Finding:
     """C1a: the share of neighbouring states that are ordered as claimed."""
     force = _forces(data, data.model)
@@ -35,6 +36,7 @@ def falls_and_rises(data: Data) -> Finding:
     return graded(share, [along.all(), across.all()], why)
 
 
+@CLAIMS.add("C1b", "fig04", "force against contraction is nonlinear", paper="nonlinear")
 def nonlinear(data: Data) -> Finding:
     """C1b: distance from a straight line against that of Eq. (1)."""
     ours = min(bend(STEPS, force) for force in _forces(data, data.model))
@@ -46,6 +48,9 @@ def nonlinear(data: Data) -> Finding:
     return graded(ours, [ours > 0.05, ours > 2 * equation], why)
 
 
+@CLAIMS.add(
+    "C1c", "fig04", "force is below Eq. (1), the more so at high contraction", paper="below"
+)
 def below_equation(data: Data) -> Finding:
     """C1c: how far below Eq. (1), and where more so."""
     return lacking(_forces(data, GEOMETRIC), _forces(data, data.model))
@@ -62,6 +67,7 @@ def lacking(equation: Array, ours: Array) -> Finding:
     return graded(float(lack[:, -1].mean()), parts, why)
 
 
+@CLAIMS.add("C1d", "fig04", "mean deviation from the manufacturer's map", paper=f"{MEAN:g}")
 def mean_deviation(data: Data) -> Finding:
     """C1d: mean deviation from the manufacturer's map."""
     found = _deviations(data, data.model)[RELATIVE].dropna()
@@ -73,6 +79,7 @@ def mean_deviation(data: Data) -> Finding:
     return within(mean, abs(mean - MEAN), 0.04, 0.1, why)
 
 
+@CLAIMS.add("C1e", "fig04", "that deviation is nearly constant", paper="constant")
 def constant_deviation(data: Data) -> Finding:
     """C1e: the range of the deviations."""
     found = _deviations(data, data.model)[RELATIVE].dropna()
@@ -81,6 +88,7 @@ def constant_deviation(data: Data) -> Finding:
     return within(spread, spread, 0.1, 0.25, why)
 
 
+@CLAIMS.add("C1f", "fig04", "the deviation of Eq. (1) grows with contraction", paper="grows")
 def equation_by_contraction(data: Data) -> Finding:
     """C1f: deviation of Eq. (1), as a share of the curve's largest force, along contraction."""
     share = _equation(data)
@@ -92,6 +100,7 @@ def equation_by_contraction(data: Data) -> Finding:
     return graded(float(share[:, -1].mean()), [rising.all(), rising.mean() > 0.5], why)
 
 
+@CLAIMS.add("C1g", "fig04", "the deviation of Eq. (1) grows with pressure", paper="grows", unit="N")
 def equation_by_pressure(data: Data) -> Finding:
     """C1g: deviation of Eq. (1) along pressure, in newtons and as a share."""
     share, found = _equation(data), _deviations(data, GEOMETRIC)
@@ -126,50 +135,3 @@ def _deviations(data: Data, model: str) -> pd.DataFrame:
     if rows[SHARE].isna().any():
         raise Missing("a state is not converged or outside the manufacturer's map")
     return rows
-
-
-CLAIMS = (
-    Claim(
-        "C1a",
-        "fig04",
-        "force falls with contraction and rises with pressure",
-        "1",
-        "always",
-        falls_and_rises,
-    ),
-    Claim("C1b", "fig04", "force against contraction is nonlinear", "1", "nonlinear", nonlinear),
-    Claim(
-        "C1c",
-        "fig04",
-        "force is below Eq. (1), the more so at high contraction",
-        "1",
-        "below",
-        below_equation,
-    ),
-    Claim(
-        "C1d",
-        "fig04",
-        "mean deviation from the manufacturer's map",
-        "1",
-        f"{MEAN:g}",
-        mean_deviation,
-    ),
-    Claim("C1e", "fig04", "that deviation is nearly constant", "1", "constant", constant_deviation),
-    Claim(
-        "C1f",
-        "fig04",
-        "the deviation of Eq. (1) grows with contraction",
-        "1",
-        "grows",
-        equation_by_contraction,
-    ),
-    Claim(
-        "C1g",
-        "fig04",
-        "the deviation of Eq. (1) grows with pressure",
-        "N",
-        "grows",
-        equation_by_pressure,
-    ),
-)
-assert PRESSURE in PRESSURES

@@ -10,7 +10,7 @@ from workflow.analyses.claims.claim import (
     PRESSURE,
     STEPS,
     Array,
-    Claim,
+    Claims,
     Data,
     Finding,
     Verdict,
@@ -30,8 +30,10 @@ BEST = 2.0  # mm, where the paper's silicone muscle pulls most
 CONTRACTION, LOAD = 0.1, 200.0
 LINEAR = 0.05  # of the range: what a curve that is called linear may leave its chord by
 ERROR = 0.01  # of the largest force, for the conditioning of a ratio
+CLAIMS = Claims()
 
 
+@CLAIMS.add("C6a", "fig09", "a larger braid angle gives less force", paper="less", unit="N")
 def larger_angle_less_force(data: Data) -> Finding:
     """C6a."""
     less = _by_angle(data)
@@ -39,11 +41,13 @@ def larger_angle_less_force(data: Data) -> Finding:
     return graded(float(less.min()), list(less > 0), why)
 
 
+@CLAIMS.add("C6b", "fig09", "its effect is greater at low contraction", paper="< 1")
 def angle_matters_at_low_contraction(data: Data) -> Finding:
     """C6b."""
     return _fades(_by_angle(data), "the difference")
 
 
+@CLAIMS.add("C6c", "fig09", "force is below Eq. (1), more so at high contraction", paper="below")
 def both_below_equation(data: Data) -> Finding:
     """C6c: both angles against Eq. (1)."""
     muscles = (MUSCLE, SMALL_ANGLE)
@@ -51,6 +55,7 @@ def both_below_equation(data: Data) -> Finding:
     return lacking(equation, np.array([data.forces(muscle) for muscle in muscles]))
 
 
+@CLAIMS.add("C6d", "fig09", "the curves of both angles meet near 20 %", paper="0")
 def curves_meet(data: Data) -> Finding:
     """C6d: what is left at 20 % of the difference at no contraction."""
     less = _by_angle(data)
@@ -64,11 +69,13 @@ def curves_meet(data: Data) -> Finding:
     return within(left, abs(left), 0.1, 0.25, why)
 
 
+@CLAIMS.add("C7a", "fig10", "the effect of diameter is greater at low contraction", paper="< 1")
 def diameter_matters_at_low_contraction(data: Data) -> Finding:
     """C7a."""
     return _fades(data.forces(WIDE[60]) - data.forces(MUSCLE), "the difference")
 
 
+@CLAIMS.add("C7b", "fig11", "F(40)/F(20) by Eq. (1)", paper=f"{RATIO:g}")
 def ratio_of_equation(data: Data) -> Finding:
     """C7b: F(40) / F(20) by Eq. (1)."""
     ratio = data.forces(WIDE[60], model=GEOMETRIC) / data.forces(MUSCLE, model=GEOMETRIC)
@@ -81,6 +88,15 @@ def ratio_at_first(data: Data, threads: int) -> Finding:
     ratio = (data.forces(WIDE[threads]) / data.forces(MUSCLE))[:-1]
     why = f"{listed(ratio, '.2f')} at 0, 5, 10, 15 %: around 4 but rising all the way"
     return within(float(ratio.mean()), float(np.abs(ratio - RATIO).max()), 1.0, 2.0, why)
+
+
+for _name, _threads in (("C7c", 60), ("C7d", 120)):
+    CLAIMS.add(
+        _name,
+        "fig11",
+        f"F(40)/F(20) up to 15 %, 40 mm with {_threads} threads a layer",
+        paper=f"{RATIO:g}",
+    )(partial(ratio_at_first, threads=_threads))
 
 
 def ratio_at_last(data: Data, threads: int) -> Finding:
@@ -102,11 +118,22 @@ def ratio_at_last(data: Data, threads: int) -> Finding:
     return Finding(float(ratio), verdict, why)
 
 
+for _name, _threads in (("C7e", 60), ("C7f", 120)):
+    CLAIMS.add(
+        _name,
+        "fig11",
+        f"F(40)/F(20) at 20 %, 40 mm with {_threads} threads a layer",
+        paper=f"{SURGE:g}",
+    )(partial(ratio_at_last, threads=_threads))
+
+
+@CLAIMS.add("C8a", "fig12", "NBR: force is linear in wall thickness", paper="linear")
 def rubber_is_linear(data: Data) -> Finding:
     """C8a."""
     return _straight(_wall_forces(data, WALLS))
 
 
+@CLAIMS.add("C8b", "fig12", "NBR: force falls with wall thickness", paper="falls", unit="N/mm")
 def rubber_falls(data: Data) -> Finding:
     """C8b."""
     force = _wall_forces(data, WALLS)
@@ -115,12 +142,20 @@ def rubber_falls(data: Data) -> Finding:
     return graded(change, list(np.diff(force) < 0), why)
 
 
+@CLAIMS.add("C8c", "fig12", "silicone gives more force than NBR", paper="more", unit="N")
 def silicone_pulls_more(data: Data) -> Finding:
     """C8c."""
     more = _wall_forces(data, SILICONE) - _wall_forces(data, WALLS)
     return graded(float(more.min()), list(more > 0), f"by {listed(more)} N at 1.5, 2, 2.5, 3 mm")
 
 
+@CLAIMS.add(
+    "C8d",
+    "fig12",
+    "silicone: force rises up to a wall of 2 mm and falls beyond",
+    paper=f"{BEST:g}",
+    unit="mm",
+)
 def silicone_is_best_at_two(data: Data) -> Finding:
     """C8d: the thickness at which the silicone muscle pulls most, its threads single ones."""
     force = _wall_forces(data, SILICONE)
@@ -135,6 +170,7 @@ def silicone_is_best_at_two(data: Data) -> Finding:
     return graded(best, [best == BEST], why)
 
 
+@CLAIMS.add("C9a", "fig13", "contraction under 200 N is linear in wall thickness", paper="linear")
 def contraction_is_linear(data: Data) -> Finding:
     """C9a."""
     both = [_straight(_wall_contractions(data, walls)) for walls in (WALLS, SILICONE)]
@@ -143,6 +179,7 @@ def contraction_is_linear(data: Data) -> Finding:
     return graded(worst.value, parts, worst.why)
 
 
+@CLAIMS.add("C9b", "fig13", "it is steeper for NBR", paper="> 1")
 def rubber_is_steeper(data: Data) -> Finding:
     """C9b: slope of contraction by thickness, NBR over silicone."""
     nbr, soft = (np.ptp(_wall_contractions(data, walls)) / 1.5 for walls in (WALLS, SILICONE))
@@ -150,6 +187,7 @@ def rubber_is_steeper(data: Data) -> Finding:
     return graded(float(nbr / soft), [nbr > soft], why)
 
 
+@CLAIMS.add("C9c", "fig13", "silicone contracts more", paper="more")
 def silicone_contracts_more(data: Data) -> Finding:
     """C9c."""
     more = _wall_contractions(data, SILICONE) - _wall_contractions(data, WALLS)
@@ -188,86 +226,3 @@ def _wall_contractions(data: Data, walls: dict[float, str]) -> Array:
     """Contractions under 200 N by thickness."""
     curves = (data.curve("isotonic", "contraction", LOAD, name) for name in walls.values())
     return np.array([values(curve, PRESSURE)[0] for curve in curves])
-
-
-CLAIMS = (
-    Claim(
-        "C6a",
-        "fig09",
-        "a larger braid angle gives less force",
-        "N",
-        "less",
-        larger_angle_less_force,
-    ),
-    Claim(
-        "C6b",
-        "fig09",
-        "its effect is greater at low contraction",
-        "1",
-        "< 1",
-        angle_matters_at_low_contraction,
-    ),
-    Claim(
-        "C6c",
-        "fig09",
-        "force is below Eq. (1), more so at high contraction",
-        "1",
-        "below",
-        both_below_equation,
-    ),
-    Claim("C6d", "fig09", "the curves of both angles meet near 20 %", "1", "0", curves_meet),
-    Claim(
-        "C7a",
-        "fig10",
-        "the effect of diameter is greater at low contraction",
-        "1",
-        "< 1",
-        diameter_matters_at_low_contraction,
-    ),
-    Claim("C7b", "fig11", "F(40)/F(20) by Eq. (1)", "1", f"{RATIO:g}", ratio_of_equation),
-    *(
-        Claim(
-            name,
-            "fig11",
-            f"F(40)/F(20) up to 15 %, 40 mm with {n} threads a layer",
-            "1",
-            f"{RATIO:g}",
-            partial(ratio_at_first, threads=n),
-        )
-        for name, n in (("C7c", 60), ("C7d", 120))
-    ),
-    *(
-        Claim(
-            name,
-            "fig11",
-            f"F(40)/F(20) at 20 %, 40 mm with {n} threads a layer",
-            "1",
-            f"{SURGE:g}",
-            partial(ratio_at_last, threads=n),
-        )
-        for name, n in (("C7e", 60), ("C7f", 120))
-    ),
-    Claim(
-        "C8a", "fig12", "NBR: force is linear in wall thickness", "1", "linear", rubber_is_linear
-    ),
-    Claim("C8b", "fig12", "NBR: force falls with wall thickness", "N/mm", "falls", rubber_falls),
-    Claim("C8c", "fig12", "silicone gives more force than NBR", "N", "more", silicone_pulls_more),
-    Claim(
-        "C8d",
-        "fig12",
-        "silicone: force rises up to a wall of 2 mm and falls beyond",
-        "mm",
-        f"{BEST:g}",
-        silicone_is_best_at_two,
-    ),
-    Claim(
-        "C9a",
-        "fig13",
-        "contraction under 200 N is linear in wall thickness",
-        "1",
-        "linear",
-        contraction_is_linear,
-    ),
-    Claim("C9b", "fig13", "it is steeper for NBR", "1", "> 1", rubber_is_steeper),
-    Claim("C9c", "fig13", "silicone contracts more", "1", "more", silicone_contracts_more),
-)
