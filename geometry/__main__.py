@@ -3,12 +3,13 @@
 SPEC is a JSON file (or - for standard input) that says what to make::
 
     {"kind": "meridian", "muscle": {...}, "mesh": {...}}                  -> Medit .mesh
-    {"kind": "section", "end": "clamp", "muscle": {...}, "mesh": {...}}   -> MSH 2.2
+    {"kind": "section", "end": "butt", "muscle": {...}, "mesh": {...}}    -> MSH 2.2
     {"kind": "cell", "thread_radius": 0.3, "thread_lines": false, ...}    -> Medit .mesh
     {"kind": "whole", "muscle": {...}}                                    -> STEP
 
-with the fields of Muscle, MeridianMesh, SectionMesh and CellMesh. Ends with status 2
-and one message if that cannot be built.
+with the fields of Muscle, MeridianMesh, SectionMesh and CellMesh; with the end "clamp" also "ramp",
+the length over which it takes hold, in wall thicknesses. Ends with status 2 and one message if that
+cannot be built.
 """
 
 import argparse

@@ -3,15 +3,17 @@
 ::
 
     Z = 0            body              graded           L/2   clamp   L/2 + cap_length
-      |-------|-------|-------|-----|----|---|--|-|-|-|-|-|
-         steps near body_step   neighbours differ    steps near cap_step
-                                by growth
+      |-------|-------|-------|-----|----|---|--|-|||-|-|-|
+         steps near body_step   neighbours differ    thirds of the ramp,
+                                by growth            then steps near cap_step
 
-Steps are relative to the muscle, so that a muscle scaled by a factor has the mesh scaled by it.
+Nearly all of the error of a coarse mesh arises where a clamp takes hold, on its ramp. Steps are
+relative to the muscle, so that a muscle scaled by a factor has the mesh scaled by it.
 """
 
 import math
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +24,8 @@ from geometry.refusal import Refusal, is_count, is_number
 OF_WALL = ONE | {"relative_to": "wall thickness"}
 OF_DIAMETER = ONE | {"relative_to": "inner diameter"}
 MIN_INTERVALS = 2  # over the half length, however short the muscle
+RAMP = 1.0  # length over which a clamp takes hold, by default [wall thickness]
+RAMP_INTERVALS = 3  # at least
 MAX_INTERVALS = 10_000  # in a zone: more is a slip of the pen, not a mesh
 
 
@@ -72,20 +76,34 @@ class Grading:
         stations[0], stations[-1] = 0.0, half
         return stations
 
-    def clamp_stations(self, muscle: Muscle) -> NDArray[np.float64]:
-        """Z of the nodes beyond L/2, in equal steps to L/2 + cap_length [mm].
+    def clamp_stations(self, muscle: Muscle, ramp: float = RAMP) -> NDArray[np.float64]:
+        """Z of the nodes beyond L/2, to L/2 + cap_length [mm].
+
+        The ramp, in wall thicknesses, is cut into three or more. At its end the springs are stiff,
+        at twice its length the pressure has faded: there, and at three times, are nodes too.
 
         Raises
         ------
         UnbuildableMesh
-            If the muscle has no cap length.
+            If the muscle has no cap length, or the ramp is no length.
         """
+        if not (is_number(ramp) and ramp > 0):
+            raise UnbuildableMesh("ramp", ramp, "a finite number > 0 (wall thickness)")
         if muscle.cap_length == 0:
             raise UnbuildableMesh("cap_length", 0, "more than 0 where the end is a clamp (mm)")
-        count = max(1, round(muscle.cap_length / self._cap_step(muscle)))
-        self._refuse_many("cap_step", count)
-        steps = np.linspace(0, muscle.cap_length, count * self.refinement + 1)
-        return muscle.length / 2 + steps[1:]
+        length, end, step = ramp * muscle.wall_thickness, muscle.cap_length, self._cap_step(muscle)
+        inside = [k * length for k in (1, 2, 3) if k * length < (1 - 1e-9) * end]
+        knots = [0.0, *inside, end]
+        if len(knots) > 3 and knots[-1] - knots[-2] < length / RAMP_INTERVALS:
+            del knots[-2]  # no sliver at the end; but the ramp ends at a node
+        counts = [max(1, round((b - a) / step)) for a, b in pairwise(knots)]
+        counts[0] = max(RAMP_INTERVALS, counts[0])
+        self._refuse_many("cap_step", sum(counts))
+        steps = [
+            np.linspace(a, b, count * self.refinement + 1)[1:]
+            for (a, b), count in zip(pairwise(knots), counts, strict=True)
+        ]
+        return muscle.length / 2 + np.concatenate(steps)
 
     def _intervals(self, muscle: Muscle) -> tuple[int, int]:
         """Intervals of the body and of the graded zone, at refinement 1."""

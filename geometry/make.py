@@ -1,7 +1,8 @@
 """Files of a muscle by their specification.
 
 Each kind is a module of this package with ``KEYS``, those of its specification beside kind and
-muscle, and ``from_spec``. It is found by its name, and the others are not imported.
+muscle, if need be ``OPTIONAL`` ones, and ``from_spec``. It is found by its name, and the others are
+not imported.
 """
 
 from collections.abc import Mapping
@@ -41,7 +42,8 @@ def make(spec: Mapping[str, Any], output: Path) -> None:
     module = _module(kind)
     if module is None:
         raise UnbuildableMesh("kind", kind, ", ".join(kinds()))
-    keys = {"kind", "muscle", *module.KEYS}
-    if spec.keys() != keys:
-        raise UnbuildableMesh("keys", sorted(spec), f"exactly {sorted(keys)}")
+    keys, optional = {"kind", "muscle", *module.KEYS}, getattr(module, "OPTIONAL", set())
+    if not keys <= spec.keys() <= keys | optional:
+        also = f", and {sorted(optional)} or none of them" if optional else ""
+        raise UnbuildableMesh("keys", sorted(spec), f"exactly {sorted(keys)}{also}")
     module.from_spec(Muscle.from_dict(spec["muscle"]), spec, output)

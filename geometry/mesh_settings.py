@@ -18,7 +18,7 @@ class MeridianMesh(Grading):
 
 @dataclass(frozen=True, kw_only=True)
 class SectionMesh(Grading):
-    """Numerics of the section: 78 triangles for the muscle of the paper with a clamp.
+    """Numerics of the section: 90 triangles for the muscle of the paper with a clamp.
 
     ``rows`` are rows of elements below, between and above the thread layers; a bare tube is one
     band with their sum.

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.gmsh_file import writing
-from geometry.grading import UnbuildableMesh
+from geometry.grading import RAMP, UnbuildableMesh
 from geometry.labels import Boundary, Region
 from geometry.mesh_settings import SectionMesh
 from geometry.muscle import Muscle
@@ -29,6 +29,7 @@ from geometry.refusal import build
 from geometry.seal import seal
 
 KEYS = {"mesh", "end"}  # of a specification, beside kind and muscle
+OPTIONAL = {"ramp"}  # of a clamp, in wall thicknesses
 ENDS = ("clamp", "butt", "sliding")
 
 
@@ -38,8 +39,10 @@ def area(muscle: Muscle, end: str) -> float:
     return muscle.wall_thickness * (muscle.length / 2 + clamped)
 
 
-def stations(muscle: Muscle, mesh: SectionMesh, end: str) -> NDArray[np.float64]:
-    """Z of the rows of nodes [mm].
+def stations(
+    muscle: Muscle, mesh: SectionMesh, end: str, ramp: float = RAMP
+) -> NDArray[np.float64]:
+    """Z of the rows of nodes [mm]; ``ramp`` is that of a clamp [wall thickness].
 
     Raises
     ------
@@ -49,14 +52,21 @@ def stations(muscle: Muscle, mesh: SectionMesh, end: str) -> NDArray[np.float64]
     if end not in ENDS:
         raise UnbuildableMesh("end", end, f"one of {', '.join(ENDS)}")
     free = mesh.half_length_stations(muscle)
-    return np.concatenate([free, mesh.clamp_stations(muscle)]) if end == "clamp" else free
+    if end != "clamp":
+        return free
+    return np.concatenate([free, mesh.clamp_stations(muscle, ramp)])
 
 
-def write(muscle: Muscle, mesh: SectionMesh, end: str, path: Path) -> None:
-    """Write the section as MSH 2.2 for FreeFEM's ``gmshload``, boundaries and wall labelled."""
+def write(muscle: Muscle, mesh: SectionMesh, end: str, path: Path, ramp: float = RAMP) -> None:
+    """Write the section as MSH 2.2 for FreeFEM's ``gmshload``, boundaries and wall labelled.
+
+    Diagonals alternate along Z, counted from the cap, so that those beside it, where they matter
+    most, are the same however many intervals the body has.
+    """
     import gmsh
 
-    heights = stations(muscle, mesh, end)
+    heights = stations(muscle, mesh, end, ramp)
+    cap = int(np.searchsorted(heights, muscle.length / 2))  # the interval above it
     radii = [muscle.inner_radius, *muscle.layer_radii, muscle.outer_radius]
     rows = mesh.rows if muscle.braid else (sum(mesh.rows),)
     with writing(path, ".msh", seal):
@@ -71,7 +81,13 @@ def write(muscle: Muscle, mesh: SectionMesh, end: str, path: Path) -> None:
             for line, count in zip(level, rows, strict=True):
                 geo.mesh.setTransfiniteCurve(line, count * mesh.refinement + 1)
         cells = [
-            _cell(radial[j][b], axial[b + 1][j], radial[j + 1][b], axial[b][j], flip=j % 2 == 1)
+            _cell(
+                radial[j][b],
+                axial[b + 1][j],
+                radial[j + 1][b],
+                axial[b][j],
+                flip=(j - cap) % 2 == 0,
+            )
             for b in range(len(rows))
             for j in range(len(heights) - 1)
         ]
@@ -117,5 +133,7 @@ def _name_groups(axial: list[list[int]], radial: list[list[int]], cells: list[in
 
 def from_spec(muscle: Muscle, spec: Mapping[str, Any], output: Path) -> None:
     """Write what a specification describes."""
-    mesh = build(SectionMesh, spec["mesh"], UnbuildableMesh, "mesh")
-    write(muscle, mesh, spec["end"], output)
+    mesh, ramp = build(SectionMesh, spec["mesh"], UnbuildableMesh, "mesh"), spec.get("ramp", RAMP)
+    if "ramp" in spec and spec["end"] != "clamp":
+        raise UnbuildableMesh("ramp", ramp, "none where the end is no clamp")
+    write(muscle, mesh, spec["end"], output, ramp)

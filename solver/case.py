@@ -208,6 +208,8 @@ class Case:
         spec = {"kind": kind, "muscle": muscle, "mesh": values["numerics"][kind]}
         if kind == "section":
             spec["end"] = self.effects.end
+            if self.effects.end is End.CLAMP:
+                spec["ramp"] = self.numerics.clamp.ramp
         if kind == "cell":
             spec["thread_radius"] = (
                 self.numerics.spread.radius_of(self.thread) if self.thread is not None else None

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from geometry.grading import OF_WALL
+from geometry.grading import OF_WALL, RAMP
 from geometry.mesh_settings import CellMesh, MeridianMesh, SectionMesh
 from geometry.muscle import ONE, Muscle
 from geometry.refusal import is_count, is_number
@@ -44,7 +44,7 @@ class Clamp:
     that are left out: a muscle scaled by a factor has its forces scaled by the square of it.
     """
 
-    ramp: float = field(default=1.0, metadata=OF_WALL)
+    ramp: float = field(default=RAMP, metadata=OF_WALL)
     thread_stiffness: float | None = field(default=None, metadata=DENSITY)  # on layers
     inner_stiffness: float | None = field(default=None, metadata=DENSITY)  # inside
 

@@ -86,10 +86,51 @@ def test_the_mesh_scales_with_the_muscle(muscle):
             assert getattr(mesh, stations)(large) == pytest.approx(3 * small, rel=1e-12)
 
 
-def test_clamp_is_uniform(muscle):
+def test_clamp_is_uniform_behind_its_ramp(muscle):
+    """Thirds of the ramp, of 2 mm here, where nearly all of the error arises; then even steps."""
     z = SectionMesh(refinement=2).clamp_stations(muscle)
-    assert z == pytest.approx(np.arange(151, 159), rel=1e-14)
+    on_ramp = [150 + k / 3 for k in range(1, 7)]
+    assert z == pytest.approx([*on_ramp, *range(153, 159)], rel=1e-14)
     assert z[-1] == 158
+
+
+@pytest.mark.parametrize("wall", [1.2, 2.0, 7.0])
+@pytest.mark.parametrize("ramp", [0.1, 0.5, 1.0, 1.2, 2.0, 3.9, 4.0, 10.0])
+@pytest.mark.parametrize("cap_step", [0.25, 1.0, 2.0])
+def test_clamp_is_cut_where_its_ramp_ends(wall, ramp, cap_step):
+    """Fields have a kink there; and no interval is a sliver, nor longer than asked for."""
+    tube = Muscle(
+        inner_diameter=20, wall_thickness=wall, length=300, braid=None, cap_length=4 * wall
+    )
+    mesh = SectionMesh(cap_step=cap_step)
+    z = np.concatenate([[0], mesh.clamp_stations(tube, ramp) - 150])
+    assert z[-1] == pytest.approx(4 * wall, rel=1e-12)
+    assert (np.diff(z) > 0.02 * min(ramp, cap_step) * wall).all()
+    assert np.diff(z).max() < 1.5 * cap_step * wall
+    held = ramp * wall
+    if ramp < 4:
+        assert np.abs(z - held).min() < 1e-9
+    assert (z[1:] <= min(held, 4 * wall) * (1 + 1e-9)).sum() >= 3
+    for refinement in (2, 3):
+        finer = replace(mesh, refinement=refinement).clamp_stations(tube, ramp) - 150
+        assert finer[refinement - 1 :: refinement] == pytest.approx(z[1:], rel=1e-9)
+
+
+@pytest.mark.parametrize("length", [2.0, 2.4, 2.7, 4.0, 6.0, 6.1, 30.0])
+def test_a_clamp_of_any_length_ends_where_it_ends(length):
+    tube = Muscle(inner_diameter=20, wall_thickness=2, length=300, braid=None, cap_length=length)
+    z = SectionMesh().clamp_stations(tube) - 150
+    assert z[-1] == pytest.approx(length, rel=1e-12)
+    assert (np.diff(z) > 0).all()
+    assert np.abs(z - 2).min() < 1e-9
+
+
+@pytest.mark.parametrize("ramp", [0, -1.0, math.nan, math.inf, "1", None])
+def test_a_ramp_that_is_no_length_is_refused(muscle, ramp):
+    with pytest.raises(UnbuildableMesh) as refusal:
+        SectionMesh().clamp_stations(muscle, ramp)
+    allowed = "a finite number > 0 (wall thickness)"
+    assert str(refusal.value) == f"ramp = {ramp!r} is refused; allowed: {allowed}"
 
 
 def test_no_clamp_without_cap_length():

@@ -91,6 +91,7 @@ def test_nonsense_ends_with_a_message_and_status_2(text, message, tmp_path):
         (("mesh", "finesse"), 2, "mesh.finesse = 2 is refused; allowed: no such key"),
         (("mesh",), 5, "mesh = 5 is refused; allowed: a mapping"),
         (("end",), "glued", "end = 'glued' is refused; allowed: one of clamp, butt, sliding"),
+        (("ramp",), 1.0, "ramp = 1.0 is refused; allowed: none where the end is no clamp"),
         (("colour",), "red", "keys = ["),
     ],
 )

@@ -143,7 +143,9 @@ def test_models_do_not_share_keys(curve):
 @pytest.mark.parametrize("factor", ["muscle.cap_length", "numerics.clamp.ramp"])
 def test_without_a_clamp_its_settings_do_not_matter(make_case, factor):
     butt = make_case(model="solid", effects=Effects(end="butt"))
-    assert changed(butt, factor.split("."), FACTORS[factor][0]).key == butt.key
+    other = changed(butt, factor.split("."), FACTORS[factor][0])
+    assert other.key == butt.key
+    assert other.mesh_spec() == butt.mesh_spec()
 
 
 @pytest.mark.parametrize("model", BUILT)
@@ -247,7 +249,7 @@ SHAPES_NO_MESH = [
     "path.held",
     "effects.threads",
     "numerics.newton.tolerance",
-    "numerics.clamp.ramp",
+    "numerics.clamp.thread_stiffness",
 ]
 SHAPES_NO_HALF_MUSCLE = ["muscle.braid.lead", "muscle.braid.threads", "thread.stiffness"]
 SHAPES_NO_CELL = ["muscle.length", "effects.layers", "effects.twist"]
@@ -259,6 +261,7 @@ SHAPES_NO_CELL = ["muscle.length", "effects.layers", "effects.twist"]
         *((model, factor) for model in MESHED for factor in SHAPES_NO_MESH),
         *((model, factor) for model in MESHED[:2] for factor in SHAPES_NO_HALF_MUSCLE),
         *(("cell", factor) for factor in SHAPES_NO_CELL),
+        *((model, "numerics.clamp.ramp") for model in MESHED if model != "solid"),
     ],
 )
 def test_muscles_share_a_mesh(curve, model, factor):
@@ -278,6 +281,7 @@ def test_muscles_share_a_mesh(curve, model, factor):
         ("solid", "muscle.braid.layer_diameters"),
         ("solid", "effects.end"),
         ("solid", "numerics.section.rows"),
+        ("solid", "numerics.clamp.ramp"),
         ("cell", "muscle.braid.lead"),
         ("cell", "muscle.braid.threads"),
         ("cell", "thread.stiffness"),

@@ -63,17 +63,23 @@ def test_solid(curve, name):
 def test_solid_on_the_default_mesh(curve, name):
     effects, pressure, stops, forces, _ = CURVES[name]
     states = curve(pressure, stops, model="solid", effects=effects)
-    assert_near(states["force"], forces, 0.0025)
+    assert_near(states["force"], forces, 0.001)
 
 
 def test_the_solid_converges(curve):
-    """Second order at least; the fourth is not reached, as the springs of the clamp have a kink."""
+    """Within 0.02 % on the default mesh, and of second order at least.
+
+    The fourth is not reached, as the springs of the clamp have a kink. Errors are so small that the
+    order shows in the changes from mesh to mesh only, not against forces of two decimals.
+    """
     effects, pressure, stops, forces, _ = CURVES["clamp 0.3"]
-    coarse, fine = (
-        np.abs(curve(pressure, stops, model="solid", effects=effects, **mesh)["force"] - forces)
-        for mesh in ({}, {"numerics": FINE})
+    first, second, fourth = (
+        curve(pressure, stops, model="solid", effects=effects, numerics=mesh)["force"]
+        for mesh in (Numerics(), FINE, Numerics(section=SectionMesh(refinement=4)))
     )
-    assert np.all(fine[1:] < coarse[1:] / 4)  # without contraction both are exact
+    assert_near(first[:5], forces[:5], 0.0002)
+    assert_near(second, forces, 0.0001)
+    assert np.all(np.abs(fourth - second)[1:] < np.abs(second - first)[1:] / 4)
 
 
 def test_clamped_solid_stays_far_from_inversion(curve):

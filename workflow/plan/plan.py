@@ -303,7 +303,8 @@ def _check_mesh(study: Study, place: Place, variant: Variant) -> None:
     kind = MODELS[place.model].mesh or ""
     try:
         if kind == "section":
-            section.stations(muscle, variant.numerics.section, variant.effects.end)
+            numerics, end = variant.numerics, variant.effects.end
+            section.stations(muscle, numerics.section, end, numerics.clamp.ramp)
         elif kind == "meridian":
             variant.numerics.meridian.half_length_stations(muscle)
     except UnbuildableMesh as refusal:
