@@ -42,7 +42,8 @@ def make(spec: Mapping[str, Any], output: Path) -> None:
     module = _module(kind)
     if module is None:
         raise UnbuildableMesh("kind", kind, ", ".join(kinds()))
-    keys, optional = {"kind", "muscle", *module.KEYS}, getattr(module, "OPTIONAL", set())
+    keys = {"kind", "muscle", *module.KEYS}
+    optional: set[str] = getattr(module, "OPTIONAL", set())
     if not keys <= spec.keys() <= keys | optional:
         also = f", and {sorted(optional)} or none of them" if optional else ""
         raise UnbuildableMesh("keys", sorted(spec), f"exactly {sorted(keys)}{also}")

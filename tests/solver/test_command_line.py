@@ -49,7 +49,7 @@ def test_a_curve(command_line, tmp_path, make_case, mesh_of):
     parts = [cost[f"freefem_{name}_seconds"] for name in PARTS]
     assert min(parts) >= 0
     assert sum(parts) == pytest.approx(cost["freefem_cpu_seconds"], rel=0.3, abs=0.1)
-    assert cost["freefem_unknowns"] == 768
+    assert cost["freefem_unknowns"] == 884
     assert cost["freefem_iterations"] >= cost["freefem_factorisations"] > 0
     assert sorted(p.name for p in tmp_path.iterdir()) == ["cost", "log", "record"]
 
