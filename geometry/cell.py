@@ -27,7 +27,7 @@ from geometry.gmsh_file import writing
 from geometry.grading import UnbuildableMesh
 from geometry.labels import Boundary, Region
 from geometry.mesh_settings import CellMesh
-from geometry.muscle import Muscle
+from geometry.muscle import Braid, LayeredBraid, Muscle
 from geometry.refusal import build, is_number
 from geometry.seal import seal
 
@@ -53,6 +53,13 @@ class Box:
     muscle: Muscle
 
     @property
+    def _braid(self) -> Braid | None:
+        """The braid, which has one lead: no other repeats."""
+        braid = self.muscle.braid
+        assert not isinstance(braid, LayeredBraid)  # refused in a case (solver/models/cell)
+        return braid
+
+    @property
     def mean_radius(self) -> float:
         """Radius at which y is arc length, that of the wall's middle [mm]."""
         return (self.muscle.inner_radius + self.muscle.outer_radius) / 2
@@ -60,8 +67,8 @@ class Box:
     @property
     def sectors(self) -> int:
         """Cells around the tube."""
-        if self.muscle.braid is not None:
-            return self.muscle.braid.threads
+        if self._braid is not None:
+            return self._braid.threads
         return max(3, round(2 * math.pi * self.mean_radius / self.muscle.wall_thickness))
 
     @property
@@ -72,7 +79,7 @@ class Box:
     @property
     def spacing(self) -> float:
         """Extent along the axis of one cell [mm]."""
-        braid = self.muscle.braid
+        braid = self._braid
         return braid.axial_spacing if braid is not None else self.muscle.wall_thickness
 
     def distance(self, x: float, y: float, z: float) -> float:

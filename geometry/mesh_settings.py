@@ -20,8 +20,8 @@ class MeridianMesh(Grading):
 class SectionMesh(Grading):
     """Numerics of the section: 90 triangles for the muscle of the paper with a clamp.
 
-    ``rows`` are rows of elements below, between and above the thread layers; a bare tube is one
-    band with their sum.
+    ``rows`` are rows of elements below, between and above the thread layers in the wall. Above one
+    layer are those of two bands, and without any there is one band with their sum.
     """
 
     rows: tuple[int, int, int] = field(default=(1, 1, 1), metadata=ONE)
@@ -37,6 +37,11 @@ class SectionMesh(Grading):
             and all(is_count(row) for row in self.rows)
         ):
             raise UnbuildableMesh("rows", self.rows, "three integers >= 1")
+
+    def bands(self, lines: int) -> tuple[int, ...]:
+        """Rows of each band between lines of threads; of fewer than two, bands are one."""
+        below, between, above = self.rows
+        return {0: (sum(self.rows),), 1: (below, between + above)}.get(lines, self.rows)
 
 
 @dataclass(frozen=True, kw_only=True)

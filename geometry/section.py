@@ -68,7 +68,7 @@ def write(muscle: Muscle, mesh: SectionMesh, end: str, path: Path, ramp: float =
     heights = stations(muscle, mesh, end, ramp)
     cap = int(np.searchsorted(heights, muscle.length / 2))  # the interval above it
     radii = [muscle.inner_radius, *muscle.layer_radii, muscle.outer_radius]
-    rows = mesh.rows if muscle.braid else (sum(mesh.rows),)
+    rows = mesh.bands(len(muscle.layer_radii))
     with writing(path, ".msh", seal):
         geo = gmsh.model.geo
         points = [[geo.addPoint(r, z, 0) for z in heights] for r in radii]

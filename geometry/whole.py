@@ -14,15 +14,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.braid import Layer
 from geometry.gmsh_file import writing
-from geometry.muscle import Braid, Muscle, UnbuildableMuscle
+from geometry.muscle import Muscle, UnbuildableMuscle
 
 KEYS: set[str] = set()  # of a specification, beside kind and muscle
 DEVIATION = 1e-4  # of a thread's spline from its helix [mm]
 END_ERROR = 0.04  # of splines through points of a helix, see spline_heights
 MIN_STEPS = 16  # of a spline, however small a part of a turn the muscle has
 MAX_STEPS = 20_000  # more is a slip of the pen, not a braid
-TURNING = {"clockwise": 1, "counter-clockwise": -1}  # by layer; going away from the viewer along Z
+TURNING = {"clockwise": 1, "counter-clockwise": -1}  # going away from the viewer along Z
 
 
 def volume(muscle: Muscle) -> float:
@@ -31,7 +32,7 @@ def volume(muscle: Muscle) -> float:
 
 
 def thread_turns(muscle: Muscle, layer: int, z: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Angles about the axis of all threads of a layer (0 inner, 1 outer) at heights Z [rad].
+    """Angles about the axis of all threads of a layer (inner first) at heights Z [rad].
 
     Returns
     -------
@@ -42,17 +43,21 @@ def thread_turns(muscle: Muscle, layer: int, z: NDArray[np.float64]) -> NDArray[
     UnbuildableMuscle
         If the muscle has no braid.
     """
-    braid = _braid(muscle)
-    start = 2 * math.pi * np.arange(braid.threads) / braid.threads
-    turning = tuple(TURNING.values())[layer]
-    return np.asarray(start[:, None] + turning * 2 * math.pi * z / braid.lead)
+    wound = _layer(muscle, layer)
+    start = 2 * math.pi * np.arange(wound.threads) / wound.threads
+    return np.asarray(start[:, None] + wound.sense * 2 * math.pi * z / wound.lead)
 
 
 def thread_points(muscle: Muscle, layer: int, z: NDArray[np.float64]) -> NDArray[np.float64]:
     """Points of all threads of a layer at heights Z, shape (threads, heights, 3) [mm]."""
-    turns, radius = thread_turns(muscle, layer, z), muscle.layer_radii[layer]
+    turns, radius = thread_turns(muscle, layer, z), drawn_radius(_layer(muscle, layer))
     points = radius * np.cos(turns), radius * np.sin(turns), np.broadcast_to(z, turns.shape)
     return np.stack(points, axis=-1)
+
+
+def drawn_radius(layer: Layer) -> float:
+    """Radius of its threads on the unloaded muscle; a narrow sleeve is stretched [mm]."""
+    return max(layer.radius, layer.carrier)
 
 
 def spline_heights(muscle: Muscle, layer: int) -> NDArray[np.float64]:
@@ -66,8 +71,8 @@ def spline_heights(muscle: Muscle, layer: int) -> NDArray[np.float64]:
     UnbuildableMuscle
         If there is no braid, or so small a lead that this takes too many points.
     """
-    lead, half = _braid(muscle).lead, muscle.length / 2
-    step = (DEVIATION / (END_ERROR * muscle.layer_radii[layer])) ** 0.25
+    lead, half = _layer(muscle, layer).lead, muscle.length / 2
+    step = (DEVIATION / (END_ERROR * drawn_radius(_layer(muscle, layer)))) ** 0.25
     count = max(MIN_STEPS, math.ceil(2 * math.pi * muscle.length / lead / step))
     if count > MAX_STEPS:
         least = lead * count / MAX_STEPS
@@ -87,7 +92,7 @@ def write(muscle: Muscle, path: Path) -> None:
 
     threads = [
         thread_points(muscle, layer, spline_heights(muscle, layer))
-        for layer in range(len(muscle.layer_radii))
+        for layer in range(len(muscle.layers))
     ]
     names = ["tube"]
     with writing(path, ".step", lambda step: _tidy(step, names)):
@@ -100,17 +105,20 @@ def write(muscle: Muscle, path: Path) -> None:
             for side in (-1, 1):
                 occ.addCylinder(0, 0, side * half, 0, 0, side * muscle.cap_length, outer)
             names += ["cap 1", "cap 2"]
-        for layer, turning in zip(threads, TURNING, strict=False):
-            _add_threads(layer)
-            names += [f"thread {turning} {number}" for number in range(1, len(layer) + 1)]
+        count = dict.fromkeys(TURNING, 0)
+        for points, layer in zip(threads, muscle.layers, strict=True):
+            _add_threads(points)
+            turning = next(name for name, sense in TURNING.items() if sense == layer.sense)
+            before, count[turning] = count[turning], count[turning] + layer.threads
+            names += [f"thread {turning} {number + 1}" for number in range(before, count[turning])]
         occ.synchronize()
 
 
-def _braid(muscle: Muscle) -> Braid:
-    """The braid of a muscle that must have one."""
+def _layer(muscle: Muscle, number: int) -> Layer:
+    """A layer of a muscle that must have some."""
     if muscle.braid is None:
         raise UnbuildableMuscle("braid", None, "a braid, where threads are asked for")
-    return muscle.braid
+    return muscle.layers[number]
 
 
 def _add_threads(threads: NDArray[np.float64]) -> None:

@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from typing import Any
 
+from geometry.braid import Kind, LayeredBraid
 from geometry.muscle import Muscle
 from geometry.refusal import build
 from solver import rubber
@@ -23,6 +24,7 @@ from solver.effects import (
     ThreadLaw,
     Twist,
     Volume,
+    Wall,
     active,
     check_carried,
     switches,
@@ -31,6 +33,7 @@ from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
 from solver.memory import Memory
 from solver.models import MODELS
+from solver.models.model import BRAIDS
 from solver.numerics import KINDS, Numerics
 from solver.refusal import UnsolvableCase
 from solver.rubber.rubber_law import RubberLaw
@@ -74,6 +77,10 @@ class Case:
             raise UnsolvableCase("thread", None, "a thread, as the muscle has a braid")
         if self.muscle.braid is None and MODELS[self.model].needs_braid:
             raise UnsolvableCase("model", self.model, "another model: Eq. (1) needs a braid")
+        if self.muscle.braid is not None:
+            instead = BRAIDS[MODELS[self.model].braids](self.muscle.braid)
+            if instead:
+                raise UnsolvableCase("model", self.model, instead)
         check_carried(self.model, self.effects)
         frame, law = MODELS[self.model].frame, self.rubber
         if frame and not law.has_frame(frame):
@@ -83,6 +90,7 @@ class Case:
                 f"the rubber, {law.law()}, needs principal stretches"
             )
             raise UnsolvableCase("model", self.model, allowed)
+        _check_sleeves(self.muscle, self.effects)
         if self.muscle.braid is None and self.effects.rubber is Rubber.NONE:
             raise UnsolvableCase("rubber", self.effects.rubber, "elastic in a bare tube")
         if not isinstance(self.fields_at, tuple):
@@ -202,6 +210,9 @@ class Case:
         muscle = values["muscle"]
         if kind == "cell":
             muscle["length"] = 1.0  # shapes no cell
+        elif isinstance(self.muscle.braid, LayeredBraid):
+            lines = self.muscle.braid.embedded_diameters  # all of it that shapes a section
+            muscle["braid"] = asdict(LayeredBraid.of_lines(lines)) if lines else None
         elif muscle["braid"] is not None:
             # lead and thread number shape no section: muscles that differ there share a mesh
             muscle["braid"] = {**muscle["braid"], "lead": 1.0, "threads": 1}
@@ -249,6 +260,19 @@ class Case:
     def from_json(cls, text: str) -> "Case":
         """The case of its canonical JSON."""
         return cls.from_dict(json.loads(text))
+
+
+def _check_sleeves(muscle: Muscle, effects: Effects) -> None:
+    """Refuse effects that a braid of several layers, or a sleeve, has not."""
+    braid = muscle.braid
+    if not isinstance(braid, LayeredBraid):
+        return
+    if Kind.SLEEVE in braid.kinds and effects.threads is ThreadLaw.TWO_WAY:
+        allowed = "tension_only: a sleeve lies on the wall, and cannot push or hold it"
+        raise UnsolvableCase("threads", effects.threads, allowed)
+    if effects.wall is Wall.ONE_RADIUS:
+        allowed = "integrated, where layers have radii or angles of their own"
+        raise UnsolvableCase("wall", effects.wall, allowed)
 
 
 def digest(text: str) -> str:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from solver import balance, zero_force
 from solver.case import Case
 from solver.load_path import CONTRACTION_LIMITS, PathKind
+from solver.models import MODELS
 from solver.record import Solution
 from solver.status import CaseStatus, StateStatus, case_status, state_status
 
@@ -60,6 +61,8 @@ def judged(
     notes = _notes(case.path.kind, states, each, reason)
     for k in lost | far:
         notes[k] = LOST if k in lost else TOO_FAR.format(100 * states["contraction"][k])
+    for k, remark in enumerate(MODELS[case.model].remarks(case, states)):
+        notes[k] = "; ".join(filter(None, (notes[k], remark)))
     if case.path.zero_force:
         each[-1], note = zero_force.judge(case, states, each[-1], searched)
         notes[-1] = zero_ended or note or notes[-1]

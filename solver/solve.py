@@ -10,6 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.braid import Kind, Layer, LayeredBraid
+from geometry.labels import Boundary
+from geometry.muscle import Muscle
 from geometry.seal import is_sealed, why_none
 from solver import continuity, files, freefem
 from solver.case import Case
@@ -17,6 +20,7 @@ from solver.continuity import Solved, States, check_state
 from solver.effects import Volume
 from solver.judge import judged
 from solver.load_path import LoadPath, PathKind, Waypoint
+from solver.material import Thread
 from solver.models import MODELS
 from solver.record import Solution, unreached, variables
 from solver.smoothing import marked
@@ -338,26 +342,42 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
         "newton_tolerance": newton.tolerance,
         "newton_limit": newton.iterations,
         "smallest_step": newton.smallest_step,
-        "thread_layers": len(muscle.layer_radii),
+        "thread_layers": 0,
+        "layers": "none",
+        "slack_width": 1.0,  # read by no bare tube
     }
-    radii, tangents, stiffness, slack = (1.0, 1.0), (1.0, 1.0), 0.0, 1.0  # read by no bare tube
-    if muscle.braid is not None:
-        assert case.thread is not None
-        radii = muscle.layer_radii[0], muscle.layer_radii[1]
-        inner, outer = muscle.braid.layer_angles
-        tangents = math.tan(inner), math.tan(outer)
-        stiffness = muscle.braid.threads * case.thread.stiffness
-        slack = case.numerics.slack.width_of(case.thread)
-    values |= {
-        "layer_radius_1": radii[0],
-        "layer_radius_2": radii[1],
-        "tan_angle_1": tangents[0],
-        "tan_angle_2": tangents[1],
-        "layer_stiffness": stiffness,
-        "slack_width": slack,
-    }
+    if case.thread is not None:
+        layers = _layers(muscle, case.thread)
+        values |= {
+            "thread_layers": len(layers),
+            "layers": ",".join(repr(number) for layer in layers for number in layer),
+            "slack_width": case.numerics.slack.width_of(case.thread),
+        }
     values |= MODELS[case.model].flags(case)
     return {k: v if isinstance(v, str | int) else float(v) for k, v in values.items()}
+
+
+def _layers(muscle: Muscle, thread: Thread) -> list[tuple[float, ...]]:
+    """Of every layer what solver/path/parameters.idp reads; families of one shape are one layer."""
+    found: dict[Layer, int] = {}
+    for layer in muscle.layers:
+        alike = layer
+        if isinstance(muscle.braid, LayeredBraid):
+            alike = replace(layer, threads=1, sense=1)
+        found[alike] = found.get(alike, 0) + layer.threads
+    return [
+        (
+            layer.radius,
+            layer.carrier,
+            math.tan(math.atan(layer.tangent)),
+            count * thread.stiffness * layer.share,
+            float(layer.kind is Kind.EMBEDDED),
+            Boundary.OUTER.value
+            if layer.kind is Kind.SLEEVE
+            else Boundary.LAYER_1.value + muscle.layer_radii.index(layer.radius),
+        )
+        for layer, count in found.items()
+    ]
 
 
 def _collect(

@@ -8,13 +8,60 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from geometry.braid import AnyBraid, LayeredBraid
+
 FOLDER = Path(__file__).parent
 SOLVER = FOLDER.parent
 PARTS = ("effects", "rubber", "thread", "numerics")  # of a case, beside muscle and path
+LINES = 2  # of threads in the wall that a section has labels for
+
+
+def _twists(braid: AnyBraid) -> str:
+    if isinstance(braid, LayeredBraid) and not braid.is_mirrored:
+        return (
+            "cylinder, with the twist held or free: without a family that winds the other way at "
+            "the same angle, number and stiffness a muscle twists, and no plane of symmetry is left"
+        )
+    return ""
+
+
+def _many(braid: AnyBraid) -> str:
+    if len(braid.embedded_diameters) > LINES:
+        return f"cylinder, membrane: {LINES} embedded layers at most"
+    return ""
+
+
+def _many_angles(braid: AnyBraid) -> str:
+    if isinstance(braid, LayeredBraid) and not braid.has_one_angle:
+        return "cylinder: Eq. (1) has one braid angle, and the layers have several"
+    return ""
+
+
+def _many_leads(braid: AnyBraid) -> str:
+    if isinstance(braid, LayeredBraid):
+        return (
+            "cylinder, membrane, solid: a cell of the braid repeats only where two embedded layers "
+            "have one lead, number and stiffness"
+        )
+    return ""
+
+
+# What is allowed in place of a model of some kind, by the braid; empty if the braid is of it.
+BRAIDS: dict[str, Callable[[AnyBraid], str]] = {
+    "any": lambda _: "",
+    "mirrored": _twists,
+    "mirrored, two lines": lambda braid: _twists(braid) or _many(braid),
+    "one angle": lambda braid: _many_angles(braid) or _twists(braid),
+    "one lead": _many_leads,
+}
 
 
 def _nothing(_case: Any) -> dict[str, str | float]:
     return {}
+
+
+def _no_remarks(_case: Any, _states: Any) -> list[str]:
+    return []
 
 
 def _no_files(_case: Any) -> list[str]:
@@ -38,10 +85,12 @@ class Model:
     frame : in which its program asks for the law of the rubber (an include of it); none without
     compressible : whether it reads the bulk modulus
     needs_braid : whether it is of no bare tube
+    braids : of which braids it is; the words are keys of BRAIDS
     threshold : whether there can be a pressure above none at which it has no force
     quantities : that a study may ask it for
     fields : columns of fields_<waypoint>.txt by name; none without fields
     flags, composition : what its program is told beside what all are; includes by the effects
+    remarks : from a case and its states, what to say of each beside its status, or nothing
     solve : of a model in Python, from a case to its solution; imports late
     fuller, lacks : model of which it is a simplification, and the effect (or step of
         workflow/plan/effect_costs.csv) that it leaves out; without either it is not weighed
@@ -63,11 +112,13 @@ class Model:
     frame: str = ""
     compressible: bool = False
     needs_braid: bool = False
+    braids: str = "any"
     threshold: bool = True
     quantities: tuple[str, ...] = ()
     fields: Mapping[str, slice] = field(default_factory=dict)
     flags: Callable[[Any], dict[str, str | float]] = _nothing
     composition: Callable[[Any], list[str]] = _no_files
+    remarks: Callable[[Any, Any], list[str]] = _no_remarks
     solve: Callable[[Any], Any] | None = None
     fuller: str = ""
     lacks: str = ""

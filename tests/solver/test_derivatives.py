@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from geometry.mesh_settings import CellMesh, SectionMesh
+from geometry.muscle import LayeredBraid, Muscle
 from solver.effects import Effects
 from solver.numerics import Numerics
 
@@ -98,4 +99,28 @@ def test_cell(make_case, errors, twist, layers, threads):
 def test_bare_cell(make_case, bare_tube, errors):
     case = make_case(model="cell", muscle=bare_tube, numerics=CELL)
     found = errors(case, amplitude=0.02, multiplier=0.1, contraction=0.1, pressure=0.05)
+    check(found, tolerance=1e-6)
+
+
+@pytest.mark.parametrize("model", ["membrane", "solid"])
+def test_sleeve_around_one_layer_in_the_wall(make_case, errors, model):
+    """A taut sleeve, narrower than the tube, and under it a layer of two families."""
+    braid = LayeredBraid(
+        kinds=("embedded", "sleeve"),
+        layer_diameters=(21.0, 23.8),
+        leads=(140.0, 150.0),
+        threads=(30, 40),
+        senses=(0, 0),
+        stiffness_shares=(1.0, 0.5),
+    )
+    muscle = Muscle(inner_diameter=20, wall_thickness=2, length=300, braid=braid)
+    case = make_case(model=model, muscle=muscle, numerics=COARSE)
+    found = errors(
+        case,
+        amplitude=0.02,
+        multiplier=0.1 if model == "solid" else 0.0,
+        contraction=-0.02,
+        pressure=0.3,
+    )
+    assert found["thread_stretch_max"] > 1.005
     check(found, tolerance=1e-6)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 
+from geometry.braid import Braid
 from workflow.study.contents import StudiedMuscle
 
 MEAN_DEVIATION = -0.099  # Fig. 4: mean of its finite elements from the manufacturer's map
@@ -30,7 +31,7 @@ def is_wide(studied: StudiedMuscle) -> bool:
 
 def _is(studied: StudiedMuscle, diameter: float) -> bool:
     muscle, rubber = studied.muscle, studied.rubber
-    if muscle.braid is None:
+    if not isinstance(muscle.braid, Braid):
         return False
     lead, threads, *layers = BRAID
     wider = diameter - SHAPE[0]

@@ -149,7 +149,7 @@ def _of_muscle(studied: StudiedMuscle) -> list[Any]:
         if braid
         else np.nan,  # what a file says is no 17-digit number
         braid.lead if braid else np.nan,
-        float(braid.threads) if braid else np.nan,
+        braid.threads_each if braid else np.nan,
         thread.stiffness if thread else np.nan,
         studied.material,
     ]
@@ -330,7 +330,7 @@ def describe(table: pd.DataFrame, data: SceneData) -> pd.DataFrame:
             DIAMETER: muscles.map(lambda m: m.inner_diameter),
             WALL: muscles.map(lambda m: m.wall_thickness),
             ANGLE: muscles.map(lambda m: round(np.degrees(m.braid.angle), 10) if m.braid else 0.0),
-            THREADS: muscles.map(lambda m: m.braid.threads if m.braid else 0),
+            THREADS: muscles.map(lambda m: m.braid.threads_each if m.braid else 0),
             "material": table["muscle"].map(data.materials),
         }
     )

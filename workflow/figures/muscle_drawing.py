@@ -14,14 +14,15 @@ from matplotlib.patches import Circle, Polygon
 from matplotlib.transforms import offset_copy
 from numpy.typing import NDArray
 
-from geometry.muscle import Muscle
-from geometry.whole import TURNING
+from geometry.braid import Kind
+from geometry.muscle import Braid, LayeredBraid, Muscle
+from geometry.whole import TURNING, drawn_radius
 from workflow.figures.muscle_painting import (
     COVER,
     EDGE,
-    LAYER_COLOURS,
     TURNED,
     Body,
+    colour_of,
     face,
     paint,
     project,
@@ -47,8 +48,8 @@ def draw(muscle: Muscle, name: str = "", others: Sequence[str] = ()) -> Figure:
     """Draw the muscle whole, a piece of it and its wall enlarged, and its numbers.
 
     Above stands its name, and which ``others`` are not drawn.
-    Layers are laid open in steps: the tube, without its outside the outer layer, and without what
-    is outside of it the inner layer.
+    Families of threads are laid open in steps: sleeves, the tube, without its outside the outer
+    family in it, and without what is outside of that the inner one.
     """
     figure = Figure(figsize=(WIDTH, HEIGHT))
     outer, half = muscle.outer_radius, muscle.length / 2
@@ -83,23 +84,33 @@ def draw(muscle: Muscle, name: str = "", others: Sequence[str] = ()) -> Figure:
 
 def laid_open(muscle: Muscle, length: float) -> list[Body]:
     """The tube from its left end, with more of the wall taken off in every step of equal length."""
-    steps = len(muscle.layer_radii) + 1
+    steps = len(muscle.layers) + 1
     edges = (np.linspace(0, length, steps + 1) - muscle.length / 2).tolist()
-    tube = Body(
-        name="tube", radius=muscle.outer_radius, start=edges[0], stop=edges[1], greys=RUBBER
-    )
-    layers = [
-        Body(
-            name=f"{('inner', 'outer')[layer]} layer, {tuple(TURNING)[layer]}",
-            radius=muscle.layer_radii[layer],
+    radii = [drawn_radius(layer) for layer in muscle.layers]
+    order: list[int | None] = [*sorted(range(steps - 1), key=lambda k: -radii[k])]
+    order.insert(sum(layer.kind is Kind.SLEEVE for layer in muscle.layers), None)  # the tube
+    return [
+        Body(name="tube", radius=muscle.outer_radius, start=start, stop=stop, greys=RUBBER)
+        if layer is None
+        else Body(
+            name=_name(muscle, layer),
+            radius=radii[layer],
             start=start,
             stop=stop,
             greys=BENEATH,
             layer=layer,
         )
-        for layer, (start, stop) in zip(range(steps - 1)[::-1], pairwise(edges[1:]), strict=True)
+        for layer, (start, stop) in zip(order, pairwise(edges), strict=True)
     ]
-    return [tube, *layers]
+
+
+def _name(muscle: Muscle, layer: int) -> str:
+    """Of a family of threads, by what carries it and how it winds."""
+    wound = muscle.layers[layer]
+    turning = next(name for name, sense in TURNING.items() if sense == wound.sense)
+    if isinstance(muscle.braid, Braid):
+        return f"{('inner', 'outer')[layer]} layer, {turning}"
+    return f"{'sleeve' if wound.kind is Kind.SLEEVE else 'layer'}, {turning}"
 
 
 def numbers(muscle: Muscle) -> list[tuple[str, str]]:
@@ -112,6 +123,14 @@ def numbers(muscle: Muscle) -> list[tuple[str, str]]:
     braid = muscle.braid
     if braid is None:
         return [*rows, ("threads", "none")]
+    if isinstance(braid, LayeredBraid):
+        rows += [
+            (f"{kind} {threads} threads", f"{diameter:.4g} mm, {math.degrees(angle):.3g}°")
+            for kind, threads, diameter, angle in zip(
+                braid.kinds, braid.threads, braid.layer_diameters, braid.layer_angles, strict=True
+            )
+        ]
+        return rows
     inner, outer = braid.layer_diameters
     return [
         *rows,
@@ -121,6 +140,11 @@ def numbers(muscle: Muscle) -> list[tuple[str, str]]:
         ("axial spacing", f"{braid.axial_spacing:.4g} mm"),
         ("braid angle", f"{math.degrees(braid.angle):.2f}°"),
     ]
+
+
+def _outermost(muscle: Muscle) -> float:
+    """Radius of tube and sleeves [mm]."""
+    return max([muscle.outer_radius, *(drawn_radius(layer) for layer in muscle.layers)])
 
 
 def spread(values: list[float], gap: float) -> list[float]:
@@ -149,7 +173,7 @@ def _view(
     stop: float,
 ) -> Axes:
     """Axes in mm on the paper that hold the muscle from one Z to another."""
-    axes, outer = _axes(figure, place), muscle.outer_radius
+    axes, outer = _axes(figure, place), _outermost(muscle)
     side = math.sin(TURNED) * outer  # half the width of a circle about the axis
     axes.set_xlim(math.cos(TURNED) * start - side, math.cos(TURNED) * stop + side)
     axes.set_ylim(-1.02 * outer, 1.02 * outer)
@@ -184,7 +208,7 @@ def _name_bodies(axes: Axes, muscle: Muscle, bodies: list[Body]) -> None:
                 ha="center",
                 va="center",
                 fontsize=FONT,
-                color="black" if body.layer is None else LAYER_COLOURS[body.layer],
+                color="black" if body.layer is None else colour_of(body.layer),
                 arrowprops={"arrowstyle": "-", "shrinkA": 1, **LINE},
                 annotation_clip=False,
             )
@@ -204,11 +228,12 @@ def _section(figure: Figure, muscle: Muscle) -> None:
     axes.add_patch(
         Polygon(wall, facecolor=str(CUT), edgecolor="black", linewidth=EDGE, clip_on=False)
     )
-    for layer in range(len(muscle.layer_radii)):
+    for layer in range(len(muscle.layers)):
         _cut_threads(axes, muscle, layer, half)
 
-    radii = [inner, *muscle.layer_radii, outer]
-    colours = ["black", *LAYER_COLOURS[: len(muscle.layer_radii)], "black"]
+    within = [k for k, layer in enumerate(muscle.layers) if layer.kind is Kind.EMBEDDED]
+    radii = [inner, *(muscle.layers[k].radius for k in within), outer]
+    colours = ["black", *map(colour_of, within), "black"]
     ends = [(radius * math.sin(half), radius * math.cos(half)) for radius in radii]
     heights = spread([float(y) for _, y in ends], ROW / scale)
     beside = outer * half + 0.15 / scale
@@ -225,15 +250,15 @@ def _section(figure: Figure, muscle: Muscle) -> None:
 
 def _cut_threads(axes: Axes, muscle: Muscle, layer: int, half: float) -> None:
     """The threads of a layer across the axis, within an angle on both sides; no wider than fits."""
-    assert muscle.braid is not None
-    radius, apart = muscle.layer_radii[layer], 2 * math.pi / muscle.braid.threads
+    wound = muscle.layers[layer]
+    radius, apart = drawn_radius(wound), 2 * math.pi / wound.threads
     radii = [muscle.inner_radius, *muscle.layer_radii, muscle.outer_radius]
     size = min(COVER * radius * apart, *np.diff(radii)) / 2
     turn = np.linspace(-half, half, 50)
-    axes.plot(*_across(radius, turn).T, color=LAYER_COLOURS[layer], linewidth=EDGE)
+    axes.plot(*_across(radius, turn).T, color=colour_of(layer), linewidth=EDGE)
     number = int((half - size / radius) / apart)
     for centre in _across(radius, np.arange(-number, number + 1) * apart):
-        axes.add_patch(Circle(tuple(centre), size, color=LAYER_COLOURS[layer], linewidth=0))
+        axes.add_patch(Circle(tuple(centre), size, color=colour_of(layer), linewidth=0))
 
 
 def _across(radius: float, turn: NDArray[np.floating[Any]]) -> NDArray[np.float64]:

@@ -20,6 +20,7 @@ from geometry.muscle import Muscle
 from geometry.whole import thread_turns
 
 LAYER_COLOURS = ("#12357a", "#e2740f")  # inner, outer; they differ in grey too
+MORE_COLOURS = ("#7a1242", "#d8c83a", "#2b5a4f", "#b0b0d8")  # of further families
 TURNED = math.radians(24)  # of the axis, out of the plane of the paper
 LIGHT = math.radians(35)  # of the light, above the viewer
 STRIPS = 48  # of the seen half of a cylinder
@@ -31,7 +32,7 @@ SEEN = math.pi / 2  # a cylinder is seen to this angle on both sides of the view
 
 @dataclass(frozen=True, kw_only=True)
 class Body:
-    """A piece of cylinder, and the thread layer on it (0 inner, 1 outer); lengths in mm."""
+    """A piece of cylinder, and the family of threads on it (0 innermost); lengths in mm."""
 
     name: str
     radius: float
@@ -39,6 +40,12 @@ class Body:
     stop: float
     greys: tuple[float, float]  # darkest and lightest
     layer: int | None = None
+
+
+def colour_of(layer: int) -> str:
+    """Of a family of threads."""
+    every = LAYER_COLOURS + MORE_COLOURS
+    return every[layer % len(every)]
 
 
 def project(radius: float, turn: NDArray[np.float64], z: Any) -> NDArray[np.float64]:
@@ -83,10 +90,10 @@ def _surface(axes: Axes, body: Body) -> None:
 
 def _threads(axes: Axes, muscle: Muscle, layer: int, body: Body) -> None:
     """What is seen of a layer's threads, as bands on the cylinder, cut off where it turns away."""
-    assert muscle.braid is not None
-    steps = math.ceil(STEPS_PER_TURN * (body.stop - body.start) / muscle.braid.lead)
+    wound = muscle.layers[layer]
+    steps = math.ceil(STEPS_PER_TURN * (body.stop - body.start) / wound.lead)
     z = np.linspace(body.start, body.stop, max(steps, 8) + 1)
-    half = COVER * math.pi / muscle.braid.threads  # width of a band [rad]
+    half = COVER * math.pi / wound.threads  # width of a band [rad]
     bands = []
     for turns in thread_turns(muscle, layer, z):
         middle = np.remainder(turns + math.pi, 2 * math.pi) - math.pi
@@ -98,7 +105,7 @@ def _threads(axes: Axes, muscle: Muscle, layer: int, body: Body) -> None:
                 edges = [np.clip(middle[run] + side, -SEEN, SEEN) for side in (-half, half)]
                 there, back = (project(body.radius, edge, z[run]) for edge in edges)
                 bands.append(np.concatenate([there, back[::-1]]))
-    _add(axes, PolyCollection(bands, facecolors=LAYER_COLOURS[layer], linewidths=0))
+    _add(axes, PolyCollection(bands, facecolors=colour_of(layer), linewidths=0))
 
 
 def _add(axes: Axes, collection: LineCollection | PolyCollection) -> None:

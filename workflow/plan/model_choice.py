@@ -15,9 +15,11 @@ from dataclasses import dataclass, replace
 from math import inf, isnan
 from typing import Any
 
+from geometry.braid import Kind
 from solver.effects import EFFECTS, KINDS, Effects, active
 from solver.load_path import PathKind
 from solver.models import MODELS
+from solver.models.model import BRAIDS
 from solver.numerics import Numerics
 from solver.refusal import UnsolvableCase
 from workflow.plan.effect_costs import MESHES, MeasuredEffect, MeasuredEffects, load
@@ -29,6 +31,7 @@ from workflow.study.schema import QUANTITIES, Scene
 TOLERANCE = 0.01  # share of the curve's largest value, where a scene names none
 SHORTEST = 20 / 300  # diameter / length of the muscles that were measured: caps act in proportion
 CAPS = ("end_caps", "cap_geometry")
+OF_GAP = 0.2  # error of the membrane by gap of a sleeve / outer radius: 4.5 of 98 N at 0.24
 OF_MESH = 0.25  # share of the tolerance that the mesh may take
 ORDER = 3  # a mesh twice as fine leaves a third of the difference, or less (second order)
 
@@ -179,6 +182,10 @@ def _estimate(
     bare = any(study.muscles[name].thread is None for name in scene.muscles)
     if bare and MODELS[rung.model].needs_braid:
         refused = refused or "needs a braid"
+    for name in scene.muscles:
+        braid = study.muscles[name].muscle.braid
+        instead = BRAIDS[MODELS[rung.model].braids](braid) if braid else ""
+        refused = refused or (f"is of no braid as that of {name}" if instead else "")
     if rung.only_for and scene.effects.get(rung.only_for) != "on":
         refused = refused or f"only where {rung.only_for} is on"
     errors, seconds, missing = [], [], False
@@ -203,6 +210,7 @@ def _error(
     factor = error_factor(study, scene, measured, regime)
     total = _of_smearing(study, scene, measured, regime, factor) if not rung.only_for else 0.0
     missing = False
+    gap = max(_gap(study, name) for name in scene.muscles)
     at: Rung | None = rung
     while at is not None:
         effect = measured[regime, scene.kind, at.step]
@@ -211,6 +219,8 @@ def _error(
             total += change / ORDER
         else:
             total += change
+        if at.step == "cap_geometry":
+            total += OF_GAP * gap
         missing |= at.above is not None and effect.missing > 0
         at = RUNGS[at.above] if at.above else None
     return total, missing
@@ -252,6 +262,13 @@ def _judged(scene: Scene) -> list[str]:
     if "threshold_pressure" in scene.quantities:
         names.append("threshold")
     return names
+
+
+def _gap(study: Study, name: str) -> float:
+    """Widest gap between tube and sleeve, as a share of the tube's outer radius."""
+    tube = study.muscles[name].muscle
+    gaps = (layer.radius - layer.carrier for layer in tube.layers if layer.kind is Kind.SLEEVE)
+    return max([0.0, *gaps]) / tube.outer_radius
 
 
 def _stoutness(study: Study, muscle: str) -> float:

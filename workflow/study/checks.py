@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from geometry.muscle import Braid, Muscle
+from geometry.muscle import AnyBraid, Muscle
 from geometry.refusal import Refusal
 from solver import net
 from solver.load_path import ZERO_FORCE, LoadPath
@@ -160,6 +160,11 @@ def _fitted(
 ) -> Iterator[StudyError]:
     """What the rubber does not have, and bounds up to which there is none."""
     own = [EA, *made.rubber.values()]
+    layers = source.plain["muscles"][source.owner(entry.muscle, "layers")].get("layers") or ()
+    if EA in entry.fit and any({EA, "thread_modulus"} & set(layer) for layer in layers):
+        allowed = f"of this muscle, {EA} where it is given once, for the muscle and not for a layer"
+        yield source.refuse((*keys, "fit"), EA, allowed)
+        return
     for key in entry.fit:
         if key not in own:
             allowed = f"of this muscle, {choices(key, own)}"
@@ -189,10 +194,15 @@ def proportions(tube: Muscle) -> Iterator[tuple[str, str]]:
             yield blamed, f"{key} / inner_diameter from {low:g} to {high:g}; here {share:.3g}"
 
 
-def angle(braid: Braid) -> Iterator[str]:
+def angle(braid: AnyBraid) -> Iterator[str]:
     """What is allowed in place of an angle at which threads are no braid."""
+    yield from wound_angle(braid.angle)
+
+
+def wound_angle(radians: float) -> Iterator[str]:
+    """What is allowed in place of an angle of threads at which they are no braid."""
     low, high = ANGLES
-    degrees = math.degrees(braid.angle)
+    degrees = math.degrees(radians)
     if not low <= degrees <= high:
         yield f"braid angles from {low:g} to {high:g} degrees; here {degrees:.3g}"
 
@@ -226,6 +236,11 @@ def _written(file: StudyFile) -> Iterator[tuple[Keys, Any]]:
         for name, entry in entries.items():
             for key in entry.model_fields_set:
                 value = getattr(entry, key)
+                if key == "layers":
+                    for number, layer in enumerate(value or ()):
+                        for own in layer.model_fields_set:
+                            yield (section, name, key, number, own), getattr(layer, own)
+                    continue
                 yield (section, name, key), _as_written(value)
     for key in sorted(file.limits.model_fields_set):
         yield ("limits", key), getattr(file.limits, key)
@@ -237,7 +252,8 @@ def _unusual_braid(source: Source, name: str, made: StudiedMuscle) -> Iterator[s
         return
     area = math.pi * (tube.inner_diameter + tube.wall_thickness) * tube.wall_thickness
     key = "thread_stiffness"
-    share = 2 * braid.threads * thread.stiffness / (3 * made.rubber.shear_modulus * area)
+    total = sum(layer.threads * thread.stiffness * layer.share for layer in tube.layers)
+    share = total / (3 * made.rubber.shear_modulus * area)
     if share < WEAK:
         place = source.place(("muscles", source.owner(name, key), key))
         yield (

@@ -23,6 +23,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from geometry.braid import MOST_LAYERS, Kind
 from geometry.refusal import is_count
 from solver.effects import EFFECTS, Effects
 from solver.history import Start, Wave
@@ -60,6 +61,16 @@ FORCE_MAPS = ("festo_musclesim", "martens2017")  # read by workflow/data/referen
 MOST_THREADS = 10_000  # more is a typing error
 IN_TIME = ("cycle", "transient")  # paths beside those of PathKind
 KIND_OF_HELD = {kind.held.key: kind.value for kind in PathKind}
+SENSES = {"clockwise": 1, "counter-clockwise": -1, "both": 0}  # of a layer
+_NO_BENDING = "nothing: no model has the bending of threads, which bend without resistance"
+_NO_SLIP = (
+    "nothing: no model has slip of threads; in rubber they are bonded, and a sleeve moves along "
+    "with the surface on which it lies"
+)
+INEXPRESSIBLE = {  # keys that one might look for
+    **dict.fromkeys(("bending", "bending_stiffness", "thread_bending"), _NO_BENDING),
+    **dict.fromkeys(("slip", "thread_slip", "friction", "thread_friction"), _NO_SLIP),
+}
 HELD_KEY = {kind.value: kind.held.key for kind in PathKind}
 SWEPT_KEY = {kind.value: kind.swept.key for kind in PathKind}
 
@@ -266,6 +277,24 @@ BOUNDS = {  # what a calibration can fit, and its bounds: first of the thread, t
 }
 
 
+class LayerEntry(Entry):
+    """A layer of threads; of a braid's keys what it has not it takes from its muscle."""
+
+    kind: _one_of(*Kind)
+    depth: Number | None = None  # of an embedded layer
+    gap: Number | None = None  # of a sleeve
+    free_radius: Number | None = None
+    free_length: Number | None = None
+    crimp_radius: Number | None = None
+    sense: _one_of(*SENSES) | None = None
+    threads: Annotated[Whole, Field(ge=1, le=MOST_THREADS)] | None = None  # of a family
+    lead: Number | None = None
+    angle: Number | None = None
+    thread_stiffness: Number | None = None
+    thread_modulus: Number | None = None
+    thread_diameter: Number | None = None
+
+
 class MuscleEntry(Entry):
     """A muscle, or what of it differs from its ``base``."""
 
@@ -279,7 +308,9 @@ class MuscleEntry(Entry):
     lead: Number | None = None
     angle: Number | None = None
     angle_of: Name | None = None
+    layers: Annotated[list[LayerEntry], Field(min_length=1, max_length=MOST_LAYERS)] | None = None
     thread_stiffness: Number | None = None
+    thread_modulus: Number | None = None
     thread_diameter: Number | None = None
     thread_strength: Number | None = None
     material: Name | None = None

@@ -13,6 +13,7 @@ from workflow.study import plain_yaml, units, user_file
 from workflow.study.errors import Findings, StudyError, choices, printable, shown
 from workflow.study.plain_yaml import Node, UnreadableText
 from workflow.study.schema import (
+    INEXPRESSIBLE,
     LONGEST_NAME,
     MATERIALS,
     NAME_RULE,
@@ -192,6 +193,8 @@ class Source:
         line = self.line(keys) or 0
         allowed = error["msg"].removeprefix("Input should be ")
         if keys and keys[-1] == "[key]":
+            if keys[-2] in INEXPRESSIBLE:
+                return self.refuse(keys[:-1], error["input"], INEXPRESSIBLE[str(keys[-2])])
             allowed = allowed if error["type"] == "refused" else NAME_RULE
             return StudyError(
                 f"{self.place(keys[:-1])} is no name here\n  allowed: {allowed}", line
@@ -200,6 +203,8 @@ class Source:
             law = self.plain["materials"][keys[-1]]["law"]
             return self.refuse((*keys, "law"), law, choices(law, list(MATERIALS)))
         if error["type"] in ("extra_forbidden", "invalid_key"):
+            if keys[-1] in INEXPRESSIBLE:
+                return self.refuse(keys, error["input"], INEXPRESSIBLE[str(keys[-1])])
             allowed = choices(keys[-1], self._known_keys(keys[:-1]))
             return StudyError(
                 f"{self.place(keys)} is no key here\n  allowed: {allowed}", line, keys
@@ -240,9 +245,19 @@ def _schema_keys(keys: Keys) -> list[str]:
             entry = [a for a in get_args(schema) if isinstance(a, type) and issubclass(a, Entry)]
             if entry and not _is_dict(schema):
                 schema = entry[0]  # optional
+        elif isinstance(key, int):
+            schema = _entry_within(schema)  # of a list that may be left out
         else:
             schema = get_args(schema)[1]  # of dict[name, entry]
     return list(schema.model_fields)
+
+
+def _entry_within(schema: Any) -> Any:
+    """The entry of which a list is."""
+    if isinstance(schema, type) and issubclass(schema, Entry):
+        return schema
+    found = (_entry_within(part) for part in get_args(schema))
+    return next((entry for entry in found if entry is not None), None)
 
 
 def _is_dict(schema: Any) -> bool:

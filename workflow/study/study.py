@@ -4,6 +4,7 @@ Nothing is read from a study file anywhere else. ``base`` and ``angle_of`` of mu
 here, and every muscle is built, so that what cannot be built is refused before anything runs.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
@@ -13,7 +14,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from geometry.muscle import Braid, Muscle
+from geometry.braid import Layer
+from geometry.muscle import AnyBraid, Braid, Muscle
 from geometry.refusal import Refusal
 from solver.effects import Effects
 from solver.material import Thread
@@ -21,9 +23,10 @@ from solver.memory import Memory
 from solver.numerics import KINDS, Numerics, Spread
 from solver.rubber import LAWS
 from solver.rubber.rubber_law import LEAST_KAPPA, RubberLaw
-from workflow.study import checks, fit, in_time, units
+from workflow.study import checks, fit, in_time, layers, units
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices, shown
+from workflow.study.layers import Wound
 from workflow.study.limits import Limits
 from workflow.study.schema import (
     CalibrationEntry,
@@ -39,9 +42,12 @@ DEFAULT = "config/config.yaml"
 CAP_PER_WALL = 4  # length in the fitting by wall thickness, unless given (docs/decisions/0004)
 SHAPE_KEYS = ("inner_diameter", "wall_thickness", "length", "cap_length")
 EA = "thread_stiffness"
-OF_THREAD = (EA, "thread_diameter", "thread_strength")
-BRAID_KEYS = ("layer_depths", "lead", "angle", "angle_of", *OF_THREAD)
+MODULUS = "thread_modulus"
+OF_THREAD = (EA, MODULUS, "thread_diameter", "thread_strength")
+BRAID_KEYS = ("layer_depths", "layers", "lead", "angle", "angle_of", *OF_THREAD)
 ANGLE_KEYS = ("lead", "angle", "angle_of")  # exactly one of them
+OF_LAYERS = ("threads", *ANGLE_KEYS, EA, MODULUS, "thread_diameter")  # that layers may share
+ALTERNATIVES = (("layers", "layer_depths"), (EA, MODULUS))  # of which there is one
 # What may change while a muscle stays the one that was measured: nobody has measured these.
 NOT_MEASURED = (*OF_THREAD, "reference")
 # Values beside which another one can be judged alone
@@ -208,6 +214,11 @@ class _Muscles:
                 inherited = dict(self._complete[base]) if base else {}
                 if any(key in own for key in ANGLE_KEYS):
                     inherited = {k: v for k, v in inherited.items() if k not in ANGLE_KEYS}
+                for one, other in ALTERNATIVES:
+                    if one in own:
+                        inherited.pop(other, None)
+                    if other in own:
+                        inherited.pop(one, None)
                 if own.get("threads") == "none":
                     inherited = {k: v for k, v in inherited.items() if k not in BRAID_KEYS}
                 measured = {k: v for k, v in own.items() if k not in NOT_MEASURED}
@@ -242,24 +253,29 @@ class _Muscles:
         bare = values.get("threads") == "none"
         self._check_keys(name, values, BRAID_KEYS if bare else ())
         made: dict[str, Any] = {"thread": None}
+        wound: list[Wound] = []
         parts: dict[str, Callable[[], Any]] = {
             "rubber": lambda: self._rubber(name, values),
-            "muscle": lambda: self._muscle(name, values, bare),
+            "muscle": lambda: self._muscle(name, values, bare, wound),
         }
-        if not bare:
-            parts["thread"] = lambda: self._checked(
-                name, Thread, {"stiffness": values[EA]}, {}, {"stiffness": EA}
-            )
+        if not bare and "layers" in values:
+            parts["thread"] = partial(_stiffest_thread, wound)
+        elif not bare:
+            parts["thread"] = lambda: self._thread(name, values)
         for part, make in parts.items():
             with self.findings.gathering():
                 made[part] = make()
         if not parts.keys() <= made.keys() or (not bare and made["thread"] is None):
             raise AlreadyRefused
         limits = {"thread_strength": values.get("thread_strength"), "room": ""}
-        if not bare:
-            threads = made["muscle"].braid, made["thread"], values.get("thread_diameter")
-            self._checked(name, partial(fit.check, *threads), {}, {})
-            limits["room"] = fit.note(*threads, self.modulus)
+        for number, layer in enumerate(wound):
+            threads = [layer.layer()], layer.stiffness, layer.thread_diameter
+            self._check_fit(name, number, threads)
+            limits["room"] = limits["room"] or fit.note(*threads, self.modulus)
+        if not bare and not wound:
+            every = made["muscle"].layers, made["thread"].stiffness, values.get("thread_diameter")
+            self._checked(name, partial(fit.check, *every), {}, {})
+            limits["room"] = fit.note(*every, self.modulus)
         material = values["material"]
         if material not in self.limits:
             raise AlreadyRefused
@@ -279,13 +295,67 @@ class _Muscles:
             raise self._refuse(name, "material", material, choices(material, known))
         return self.rubbers[material]
 
-    def _muscle(self, name: str, values: dict[str, Any], bare: bool) -> Muscle:
+    def _thread(self, name: str, values: dict[str, Any]) -> Thread:
+        """The thread of all layers."""
+        stiffness, _, key, allowed = layers.thread(values)
+        if key:
+            raise self._refuse(name, key, values.get(key), allowed)
+        return self._checked(name, Thread, {"stiffness": stiffness}, {}, {"stiffness": EA})
+
+    def _muscle(self, name: str, values: dict[str, Any], bare: bool, wound: list[Wound]) -> Muscle:
         cap_length = CAP_PER_WALL * max(0, values["wall_thickness"])
         shape = {"cap_length": cap_length} | {k: values[k] for k in SHAPE_KEYS if k in values}
         tube = self._checked(name, Muscle, shape | {"braid": None}, ANY_SHAPE)
         for key, allowed in checks.proportions(tube):
             raise self._refuse(name, key, values[key], allowed)
+        if "layers" in values and not bare:
+            wound += self._layers(name, values, tube)
+            return replace(tube, braid=layers.braid(wound))
         return tube if bare else replace(tube, braid=self._braid(name, values))
+
+    def _layers(self, name: str, values: dict[str, Any], tube: Muscle) -> list[Wound]:
+        """The layers of the list; all that is wrong with them is noted."""
+        common = {key: values[key] for key in OF_LAYERS if key in values}
+        if "angle_of" in common:
+            other = self._built[values["angle_of"]].muscle.braid
+            if other is None:
+                raise self._refuse(name, "angle_of", values["angle_of"], "a muscle with a braid")
+            common["angle_of"] = other.angle
+        refuse = partial(self._refuse_layer, name)
+        found = []
+        for number, own in enumerate(values["layers"]):
+            with self.findings.gathering():
+                found.append(layers.resolved(number, own, common, tube, refuse))
+        if len(found) < len(values["layers"]):
+            raise AlreadyRefused
+        for key in common:
+            same = (
+                ANGLE_KEYS if key in ANGLE_KEYS else (EA, MODULUS) if key in (EA, MODULUS) else ()
+            )
+            everywhere = all(any(k in own for k in (key, *same)) for own in values["layers"])
+            if everywhere and self.source.has(("muscles", name, key)):
+                allowed = "not where every layer has its own"
+                raise self._refuse(name, key, values[key], allowed)
+        return found
+
+    def _check_fit(
+        self, name: str, number: int, threads: tuple[list[Layer], float, float | None]
+    ) -> None:
+        try:
+            fit.check(*threads)
+        except Refusal as refusal:
+            at = refusal.field, refusal.value, refusal.allowed
+            raise self._refuse_layer(name, number, *at) from None
+
+    def _refuse_layer(
+        self, name: str, number: int, key: str, value: object, allowed: str
+    ) -> StudyError:
+        """The error for a value of a layer, or for what that has from its muscle."""
+        values, owner = self.complete(name), self.source.owner(name, "layers")
+        if key in values["layers"][number] or key not in values:
+            said = allowed if owner == name else f"in {name}: {allowed}"
+            return self.source.refuse(("muscles", owner, "layers", number, key), value, said)
+        return self._refuse(name, key, values[key], allowed)
 
     def _checked(
         self,
@@ -306,14 +376,21 @@ class _Muscles:
             raise self._refuse(name, key, refusal.value, refusal.allowed) from None
 
     def _check_keys(self, name: str, values: dict[str, Any], unused: Sequence[str]) -> None:
-        needed = ["inner_diameter", "wall_thickness", "length", "threads", "material"]
-        needed += [] if unused else ["layer_depths", EA]
+        needed = ["inner_diameter", "wall_thickness", "length", "material"]
+        if "layers" not in values:
+            needed.insert(3, "threads")
+            needed += [] if unused else ["layer_depths"]
+            needed += [] if unused or MODULUS in values else [EA]
         missing = [key for key in needed if key not in values]
         for key in missing:
             self.findings.add(self._refuse(name, key, None, "this key must be given"))
         extra = [key for key in unused if key in values]
         for key in extra:
             self.findings.add(self._refuse(name, key, values[key], "not with threads: none"))
+        if "layers" in values and "layer_depths" in values:
+            extra.append("layer_depths")
+            allowed = "not beside layers, which have a depth each"
+            self.findings.add(self._refuse(name, "layer_depths", values["layer_depths"], allowed))
         if missing or extra:
             raise AlreadyRefused
 
@@ -334,7 +411,7 @@ class _Muscles:
             other = self._built[values["angle_of"]].muscle.braid
             if other is None:
                 raise self._refuse(name, "angle_of", values["angle_of"], "a muscle with a braid")
-            last = {"lead": other.lead * sum(diameters) / sum(other.layer_diameters)}
+            last = _lead_at_angle_of(other, diameters)
         braid = self._checked(name, build, common | last, {}, renamed)
         for allowed in checks.angle(braid):
             raise self._refuse(name, given[0], values[given[0]], allowed)
@@ -385,6 +462,20 @@ class _Muscles:
             said = circle if len(circle) <= LISTED else [*circle[:LISTED], "...", other]
             allowed = "no circle: " + " -> ".join(said)
         raise self.source.refuse(("muscles", last, key), other, allowed)
+
+
+def _stiffest_thread(wound: Sequence[Wound]) -> Thread:
+    """The thread whose stiffness those of the layers are shares of."""
+    if not wound:
+        raise AlreadyRefused
+    return Thread(stiffness=max(layer.stiffness for layer in wound))
+
+
+def _lead_at_angle_of(other: AnyBraid, diameters: tuple[float, float]) -> dict[str, float]:
+    """The lead that gives two layers the angle of another braid."""
+    if isinstance(other, Braid):
+        return {"lead": other.lead * sum(diameters) / sum(other.layer_diameters)}
+    return {"lead": math.pi * sum(diameters) / 2 / math.tan(other.angle)}
 
 
 def _variant(

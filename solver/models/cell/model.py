@@ -31,6 +31,7 @@ MODEL = Model(
     rank=5,
     label="FE cell of the braid",
     mesh="cell",
+    braids="one lead",
     switches=("threads", "layers", "twist"),
     effects=(
         "rubber",

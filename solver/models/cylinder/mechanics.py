@@ -4,7 +4,11 @@ Incompressible wall: a point R goes to r(R)^2 = r^2 + (R^2 - R_0^2) / lz, with r
 surface on which the pressure acts, and turns by tau Z. The law of the rubber
 (solver/rubber) takes the squared stretches A = lt^2, B = lz^2 and the shear (R tau)^2; a thread has
 
-    lf^2 = B cos^2 + A (sin + or - R tau cos)^2     + for the inner layer, - for the outer
+    lf^2 = B cos^2 + A (sin + or - R tau cos)^2     + clockwise, - counter-clockwise
+
+with A = r(R_c)^2 / R^2 at its own radius R; R_c is where the wall carries it, R itself in the wall
+and the outer radius for a sleeve, which is as wide as the wall where it is taut: where it is slack
+it has no energy at any width.
 
 The energy per reference length psi(r, lz, tau) gives p = psi_r / (2 pi r lz), F = psi_lz - p pi r^2
 and the torque psi_tau. Rigid threads bear tension only: the layer that binds gives r(lz).
@@ -16,11 +20,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.muscle import Braid
+from geometry.braid import Kind
 from solver import rubber
 from solver.case import INCOMPRESSIBLE, Case
 from solver.effects import Rubber, Stretch, Twist, Wall
-from solver.material import Thread
 from solver.models.cylinder.wall_memory import WallMemory
 from solver.threads import thread_law
 
@@ -55,10 +58,12 @@ class Cylinder:
         self.rubber = case.rubber
         self.free = int(effects.twist is Twist.FREE)  # unknowns of the twist
         self.rigid = effects.stretch is Stretch.RIGID and muscle.braid is not None
-        self.layers = np.array(muscle.layer_radii)
+        layers = muscle.layers
+        self.layers = np.array([layer.radius for layer in layers])
+        self.carriers = np.array([layer.carrier for layer in layers])
         self.inner, self.radii, self.measure = _wall(case)
         if effects.wall is Wall.ONE_RADIUS:
-            self.layers = np.full_like(self.layers, self.inner)
+            self.layers = self.carriers = np.full_like(self.layers, self.inner)
         if effects.rubber is Rubber.NONE:
             self.measure = 0 * self.measure
             self.modulus = 1.0
@@ -70,9 +75,14 @@ class Cylinder:
             assert case.memory is not None
             self.memory = WallMemory(case.memory, case.rubber.branch, self.measure)
             self.measure = case.memory.long_term * self.measure
-        lead = muscle.braid.lead if muscle.braid else 1.0
-        self.angles = np.arctan(2 * math.pi * self.layers / lead)
-        self.senses = np.array([1.0, -1.0])[: len(self.layers)]
+        leads = np.array([layer.lead for layer in layers])
+        self.angles = np.arctan(2 * math.pi * self.layers / leads)
+        self.senses = np.array([float(layer.sense) for layer in layers])
+        self.glue = np.array([float(layer.kind is not Kind.SLEEVE) for layer in layers])
+        if case.thread is not None:
+            ea = case.thread.stiffness
+            self.stiffness = np.array([layer.threads * ea * layer.share for layer in layers])
+            self.width = case.numerics.slack.width_of(case.thread)
         self.start = np.array([1.0, 1.0] + [0.0] * self.free)
 
     @property
@@ -117,10 +127,9 @@ class Cylinder:
         shear = (self.radii * state.twist) ** 2
         total = float(np.sum(self.measure * self.rubber.energy(a, b, shear)))
         if len(self.layers) and not self.rigid:
-            braid, thread, width = self._threads()
-            share = thread_law.energy(self.case.effects.threads, width, self.thread_stretch(state))
-            length = braid.threads * thread.stiffness / np.cos(self.angles)
-            total += float(np.sum(length * share))
+            stretch = self.thread_stretch(state)
+            share = thread_law.energy(self.case.effects.threads, self.width, stretch, self.glue)
+            total += float(np.sum(self.stiffness / np.cos(self.angles) * share))
         return total
 
     def hoop(self, r: float, lz: float) -> Array:
@@ -131,17 +140,21 @@ class Cylinder:
         """Hoop stretch at reference radii."""
         return np.asarray(np.sqrt(r**2 + (radii**2 - self.inner**2) / lz) / radii)
 
+    def _hoop_of_layers(self, r: float, lz: float) -> Array:
+        """Hoop stretch of each layer, from its own radius to that of the wall that carries it."""
+        return np.asarray(np.sqrt(r**2 + (self.carriers**2 - self.inner**2) / lz) / self.layers)
+
     def _along_threads(self, r: float, lz: float, twist: float) -> tuple[Array, Array]:
         """Axial and hoop part of the stretch of each layer's threads."""
         turned = np.sin(self.angles) + self.senses * self.layers * twist * np.cos(self.angles)
-        return lz * np.cos(self.angles), self._hoop(self.layers, r, lz) * turned
+        return lz * np.cos(self.angles), self._hoop_of_layers(r, lz) * turned
 
     def _forces(
         self, r: float, lz: float, twist: float, *, threads: bool
     ) -> tuple[float, float, float]:
         """Derivatives of psi by r, lz and tau."""
         a, b = self._hoop(self.radii, r, lz) ** 2, lz**2
-        radii, shear = self.radii, (self.radii * twist) ** 2
+        radii, carriers, shear = self.radii, self.radii, (self.radii * twist) ** 2
         by_a, by_b, by_shear = self.rubber.slopes(a, b, shear)
         torque = np.sum(self.measure * 2 * radii**2 * twist * by_shear)
         by_a, by_b = self.measure * by_a, self.measure * by_b
@@ -151,34 +164,25 @@ class Cylinder:
         if threads and len(self.layers):
             axial, hoop = self._along_threads(r, lz, twist)
             per_square = self._tension(np.hypot(axial, hoop))
-            a_layer = self._hoop(self.layers, r, lz) ** 2
+            a_layer = self._hoop_of_layers(r, lz) ** 2
             by_a = np.append(by_a, per_square * hoop**2 / a_layer)
             by_b = np.append(by_b, per_square * np.cos(self.angles) ** 2)
             turning = np.sqrt(a_layer) * self.senses * self.layers * np.cos(self.angles)
             torque += np.sum(per_square * 2 * hoop * turning)
-            radii = np.append(radii, self.layers)
+            radii, carriers = np.append(radii, self.layers), np.append(radii, self.carriers)
         by_r = np.sum(by_a * 2 * r / radii**2)
-        by_lz = np.sum(by_b * 2 * lz - by_a * (radii**2 - self.inner**2) / (lz * radii) ** 2)
+        by_lz = np.sum(by_b * 2 * lz - by_a * (carriers**2 - self.inner**2) / (lz * radii) ** 2)
         return float(by_r), float(by_lz), float(torque)
 
     def _tension(self, stretch: Array) -> Array:
         """Derivative of each layer's energy by lf^2 [N]."""
-        braid, thread, width = self._threads()
-        share = thread_law.tension(self.case.effects.threads, width, stretch)
-        total = braid.threads * thread.stiffness
-        return np.asarray(total * share / (2 * stretch * np.cos(self.angles)))
-
-    def _threads(self) -> tuple[Braid, Thread, float]:
-        """The braid, its thread, and the strain over which that slackens."""
-        braid, thread = self.case.muscle.braid, self.case.thread
-        assert braid is not None
-        assert thread is not None
-        return braid, thread, self.case.numerics.slack.width_of(thread)
+        share = thread_law.tension(self.case.effects.threads, self.width, stretch, self.glue)
+        return np.asarray(self.stiffness * share / (2 * stretch * np.cos(self.angles)))
 
     def _net(self, lz: float) -> tuple[float, float]:
         """Radius that the binding layer of a rigid net allows, and its derivative by lz."""
         cosine, sine = np.cos(self.angles) ** 2, np.sin(self.angles) ** 2
-        offset = self.layers**2 - self.inner**2
+        offset = self.carriers**2 - self.inner**2
         if not 0 < lz < 1 / math.sqrt(cosine.max()):
             return math.nan, math.nan
         square = self.layers**2 * (1 - cosine * lz**2) / sine - offset / lz

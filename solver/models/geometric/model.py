@@ -19,6 +19,7 @@ MODEL = Model(
     parts=(),
     unread=("wall_thickness", "length"),
     needs_braid=True,
+    braids="one angle",
     threshold=False,  # its force is 0 at no pressure but 0
     quantities=("force", "contraction", "inner_diameter"),
     solve=solve,

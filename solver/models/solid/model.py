@@ -33,6 +33,7 @@ MODEL = Model(
     label="FE solid",
     mesh="section",
     suffix="msh",
+    braids="mirrored, two lines",
     switches=("end", "threads", "volume"),
     effects=(
         "rubber",

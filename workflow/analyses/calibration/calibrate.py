@@ -174,7 +174,7 @@ def note(fitted: Fitted, muscle: StudiedMuscle) -> str:
     if not fitted.low > 0 or fitted.high / fitted.low > 100:
         said.append("the data hardly says anything of it")
     braid = muscle.muscle.braid
-    if fitted.parameter.name == "thread_stiffness" and braid is not None:
+    if fitted.parameter.name == "thread_stiffness" and isinstance(braid, Braid):
         limit = thickest(braid)
         if fitted.value > limit:
             said.append(

@@ -78,7 +78,7 @@ class _Hard:
 def _hard_cases(study: Study) -> dict[str, _Hard]:
     base, nbr = study.muscles[MUSCLE].muscle, study.muscles[MUSCLE].rubber
     silicone = study.muscles[SILICONE].rubber
-    assert base.braid is not None
+    assert isinstance(base.braid, Braid)
     braid = base.braid
 
     def angled(degrees: float) -> Muscle:

@@ -114,7 +114,7 @@ def _row(one: Solved) -> dict[str, Any]:
         # hoop strain of threads that carry all of the pressure, as in a thin tube
         "thread strain": pressure
         * muscle.inner_diameter**2
-        / (muscle.braid.threads * case.thread.stiffness),
+        / (muscle.braid.threads_each * case.thread.stiffness),
         "record": case.key,
     }
 

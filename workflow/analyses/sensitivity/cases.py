@@ -37,11 +37,11 @@ class Normal:
     def of(cls, study: Study) -> "Normal":
         """Of a study with the paper's muscles."""
         for name in (MUSCLE, OTHER):
-            if name not in study.muscles or study.muscles[name].muscle.braid is None:
+            if name not in study.muscles or not isinstance(study.muscles[name].muscle.braid, Braid):
                 raise StudyError(f"muscles.{name}: the sensitivities are of this muscle")
         muscle = study.muscles[MUSCLE]
         braid, thread = muscle.muscle.braid, muscle.thread
-        assert braid is not None
+        assert isinstance(braid, Braid)
         assert thread is not None
         inner, outer = braid.layer_diameters
         point = {

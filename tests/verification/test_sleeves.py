@@ -1,0 +1,259 @@
+"""Muscles whose braid is a sleeve around the tube, against numbers of codes that are not this one.
+
+Bladders of latex (c10 0.2, c01 0.02 MPa), 9.5 mm wide, wall 1.6, L 200, in a sleeve of 30 threads a
+family, EA 400 N, 30 degrees: S1 on the outer surface, S2 with a gap of 1.5 mm. S3 is thin: 1.6 mm
+wide, wall 0.25, L 100, neo-Hooke 0.1 MPa, 24 threads of 40 N at 18 degrees. The slack law is sharp
+in the cylinder (width 1e-6), and as it is by default in the others, where a slack sleeve has none
+of the stiffness that threads in rubber keep.
+"""
+
+import math
+
+import pytest
+
+from geometry.mesh_settings import MeridianMesh, SectionMesh
+from geometry.muscle import LayeredBraid, Muscle
+from solver.effects import Effects
+from solver.load_path import LoadPath
+from solver.material import Thread
+from solver.models.cylinder.curve import solve as solve_cylinder
+from solver.models.cylinder.mechanics import Cylinder
+from solver.numerics import Clamp, Numerics, Slack
+from solver.rubber.mooney_rivlin.law import MooneyRivlin
+from solver.rubber.neo_hooke.law import NeoHooke
+
+LATEX = MooneyRivlin(c10=0.2, c01=0.02)
+SOFT = NeoHooke(c10=0.1)
+SHARP = Numerics(slack=Slack(width=1e-6))
+FINE = Numerics(meridian=MeridianMesh(refinement=2))
+SOLID = Numerics(
+    section=SectionMesh(refinement=2), clamp=Clamp(thread_stiffness=200.0, inner_stiffness=20.0)
+)
+STOPS = (0.0, 0.05, 0.1, 0.15, 0.2)
+
+
+def sleeved(radius, *, bore=9.5, wall=1.6, length=200.0, threads=30, angle=30.0, senses=(0,)):
+    """A tube in sleeves of a radius, one for each of ``senses``."""
+    lead = 2 * math.pi * radius / math.tan(math.radians(angle))
+    count = len(senses)
+    braid = LayeredBraid(
+        kinds=("sleeve",) * count,
+        layer_diameters=(2 * radius,) * count,
+        leads=(lead,) * count,
+        threads=(threads,) * count,
+        senses=senses,
+        stiffness_shares=(1.0,) * count,
+    )
+    return Muscle(
+        inner_diameter=bore, wall_thickness=wall, length=length, braid=braid, cap_length=4 * wall
+    )
+
+
+S1 = {"muscle": sleeved(6.35), "rubber": LATEX, "thread": Thread(stiffness=400)}
+S2 = {"muscle": sleeved(7.85), "rubber": LATEX, "thread": Thread(stiffness=400)}
+S3 = {
+    "muscle": sleeved(1.05, bore=1.6, wall=0.25, length=100.0, threads=24, angle=18.0),
+    "rubber": SOFT,
+    "thread": Thread(stiffness=40),
+}
+MUSCLES = {"S1": S1, "S2": S2, "S3": S3}
+
+
+def isobaric(pressure, stops=STOPS):
+    return LoadPath(kind="isobaric", held=pressure, stops=stops)
+
+
+def isometric(contraction, stops):
+    return LoadPath(kind="isometric", held=contraction, stops=stops, zero_force=True)
+
+
+UNIFORM = [
+    ("S1", 0.2, (114.7148, 67.1241, 36.7938, 13.3614, -6.7022)),
+    ("S1", 0.4, (228.4329, 164.3222, 115.1008, 72.8084, 34.5957)),
+    ("S2", 0.2, (103.2236, 62.1872, 30.5725, 3.3850, -21.1477)),
+    ("S2", 0.4, (281.7872, 211.1509, 149.2789, 92.7798, 40.3558)),
+    ("S3", 0.3, (17.1116, 12.9990, 10.1647, 7.6579, 5.3514)),
+]
+# where the force is zero at 10 %, and where the sleeve first bears at 0, 10, 20 %
+PRESSURES = {
+    "S1": (0.1081509, (0.0, 0.081542, 0.110868)),
+    "S2": (0.1501103, (0.083734, 0.117727, 0.137664)),
+    "S3": (0.0612824, (0.0, 0.053581, 0.064247)),
+}
+
+
+@pytest.mark.parametrize(("name", "pressure", "forces"), UNIFORM)
+def test_cylinder(make_case, name, pressure, forces):
+    case = make_case(model="cylinder", path=isobaric(pressure), numerics=SHARP, **MUSCLES[name])
+    # the numbers are given to four decimals
+    near = max(1e-6 * max(forces), 0.6e-4)
+    assert solve_cylinder(case).states["force"] == pytest.approx(forces, abs=near)
+
+
+@pytest.mark.parametrize("name", PRESSURES)
+def test_threshold_of_a_cylinder(make_case, name):
+    path = isometric(0.1, (0.0, 0.1, 0.2))
+    case = make_case(model="cylinder", path=path, numerics=SHARP, **MUSCLES[name])
+    found = solve_cylinder(case).states["pressure"][-1]
+    assert found == pytest.approx(PRESSURES[name][0], abs=1e-6 * PRESSURES[name][0])
+
+
+@pytest.mark.parametrize("name", PRESSURES)
+def test_first_contact(make_case, name):
+    """A sleeve hangs loose up to a pressure; from there on it presses on the tube."""
+    for contraction, first in zip((0.0, 0.1, 0.2), PRESSURES[name][1], strict=True):
+        stops = (first - 1e-5, first + 1e-5) if first else (1e-5,)
+        path = LoadPath(kind="isometric", held=contraction, stops=stops)
+        case = make_case(model="cylinder", path=path, numerics=SHARP, **MUSCLES[name])
+        stretch = solve_cylinder(case).states["thread_stretch_max"]
+        assert stretch[-1] > 1
+        assert not first or stretch[0] < 1
+
+
+def test_loose_sleeve_is_no_sleeve(make_case, bare_tube):
+    """Below its first contact the muscle is a bare tube to every digit that matters."""
+    path = isobaric(0.05, (0.0, 0.1))
+    found = solve_cylinder(make_case(model="cylinder", path=path, **S2)).states
+    tube = Muscle(inner_diameter=9.5, wall_thickness=1.6, length=200.0, braid=None)
+    bare = solve_cylinder(make_case(model="cylinder", path=path, muscle=tube, rubber=LATEX)).states
+    assert found["force"] == pytest.approx(bare["force"], abs=1e-6)
+    assert found["force"][0] == pytest.approx(-0.612, abs=5e-4)
+
+
+def test_sleeve_of_another_length(make_case):
+    """Of radius 6.35 and 30 degrees at 220 mm, on S1's bladder of 200."""
+    muscle = sleeved(7.8305074, angle=38.06648)
+    case = make_case(
+        model="cylinder",
+        path=isobaric(0.4, (0.0, 0.1, 0.2)),
+        numerics=SHARP,
+        **{**S1, "muscle": muscle},
+    )
+    forces = solve_cylinder(case).states["force"]
+    assert forces == pytest.approx((128.75358, 56.14900, -6.63783), abs=1e-4)
+
+
+def test_narrow_sleeve_squeezes_without_pressure(make_case):
+    """Drawn over a tube that is too wide for it, it is stretched, and pulls."""
+    case = make_case(
+        model="cylinder", path=isobaric(0.0, (0.0, 0.02)), **{**S1, "muscle": sleeved(6.2)}
+    )
+    states = solve_cylinder(case).states
+    assert states["thread_stretch_max"][0] > 1.0005
+    assert states["force"][0] > 5
+    assert states["inner_diameter_inflated"][0] < 9.49
+
+
+def test_force_is_the_slope_of_the_energy(make_case):
+    """F = d(W - p V)/dl of two states at one pressure, of a taut sleeve with a gap."""
+    step = 1e-5
+    path = isobaric(0.3, (0.1 - step, 0.1, 0.1 + step))
+    states = solve_cylinder(make_case(model="cylinder", path=path, **S2)).states
+    potential = states["energy"] - 0.3 * states["volume"]
+    slope = (potential[0] - potential[2]) / (2 * step * 200)
+    assert slope == pytest.approx(states["force"][1], rel=1e-6)
+
+
+def contact_pressure(case, pressure, contraction):
+    """Of the sleeve on the tube, psi_A / (pi R_s^2 lz), by differences of the threads' energy."""
+    path = LoadPath(kind="isobaric", held=pressure, stops=(contraction,))
+    model = Cylinder(case)
+    states = solve_cylinder(case.__class__(**{**vars(case), "path": path})).states
+    lz, r = 1 - contraction, states["inner_diameter_inflated"][0] / 2
+    layer = case.muscle.layers[0]
+    outer = case.muscle.outer_radius
+    wall = lambda s: math.sqrt(s**2 + (outer**2 - model.inner**2) / lz)  # noqa: E731
+    tangent, total = layer.tangent, 2 * layer.threads * case.thread.stiffness
+    cosine = 1 / math.hypot(1, tangent)
+
+    def energy(radius):
+        square = (cosine * lz) ** 2 + (1 - cosine**2) * (wall(radius) / layer.radius) ** 2
+        return total / cosine * max(math.sqrt(square) - 1, 0) ** 2 / 2
+
+    step = 1e-5
+    by_r = (energy(r + step) - energy(r - step)) / (2 * step)
+    return by_r / (2 * math.pi * wall(r) * lz) * wall(r) / r, r
+
+
+def test_rubber_and_contact_share_the_pressure(make_case):
+    """What the tube bears alone at that radius, and what the sleeve presses with, are p."""
+    case = make_case(model="cylinder", path=isobaric(0.3, (0.1,)), numerics=SHARP, **S2)
+    contact, r = contact_pressure(case, 0.3, 0.1)
+    tube = Muscle(inner_diameter=9.5, wall_thickness=1.6, length=200.0, braid=None)
+    bare = make_case(model="cylinder", muscle=tube, rubber=LATEX, path=isobaric(0.0, (0.1,)))
+    model = Cylinder(bare)
+    alone = model.state([r / model.inner, 0.9]).pressure
+    assert contact > 0.1
+    assert contact + alone == pytest.approx(0.3, rel=1e-6)
+
+
+CAPPED = [
+    ("S1", 0.2, (113.8328, 64.7715, 34.5738, 12.0220, -6.1902)),
+    ("S1", 0.4, (225.7433, 158.8617, 109.0027, 67.3414, 30.8846)),
+    ("S2", 0.2, (97.7276, 57.2309, 27.2395, 2.9967)),
+]
+
+
+@pytest.mark.parametrize(("name", "pressure", "forces"), CAPPED)
+def test_membrane(solve_case, make_case, name, pressure, forces):
+    path = isobaric(pressure, STOPS[: len(forces)])
+    solution = solve_case(make_case(model="membrane", path=path, numerics=FINE, **MUSCLES[name]))
+    assert solution.states["force"] == pytest.approx(forces, abs=1e-4 * max(forces))
+
+
+def test_membrane_ends_where_its_wall_stands_upright(solve_case, make_case):
+    """And says before where it stands steep."""
+    path = isobaric(0.2, (0.1, 0.15, 0.19, 0.2))
+    solution = solve_case(make_case(model="membrane", path=path, numerics=FINE, **S2))
+    assert solution.status == "limit_point"
+    assert solution.reason.startswith("overhang")
+    assert "contraction 0.19" in solution.reason
+    steep = ["stands steep, z' = " in note for note in solution.notes]
+    assert steep == [False, False, True, False]
+
+
+SOLIDS = [
+    ("S1", 0.2, (113.757, 64.974, 34.468, 11.331, -7.982)),
+    ("S1", 0.4, (225.743, 159.431, 109.379, 67.158, 29.791)),
+    ("S2", 0.2, (97.595, 56.832, 26.160, 0.764, -20.664)),
+]
+
+
+@pytest.mark.parametrize(("name", "pressure", "forces"), SOLIDS)
+def test_solid(solve_case, make_case, name, pressure, forces):
+    path = isobaric(pressure, STOPS[::2])
+    solution = solve_case(make_case(model="solid", path=path, numerics=SOLID, **MUSCLES[name]))
+    assert solution.states["force"] == pytest.approx(forces[::2], abs=1e-3 * max(forces))
+    assert solution.states["force_midplane"] == pytest.approx(solution.states["force"], abs=1e-3)
+
+
+def test_sleeve_of_two_layers_is_one_of_both_families(make_case, solve_case):
+    two = {**S1, "muscle": sleeved(6.35, senses=(1, -1))}
+    for model in ("cylinder", "membrane"):
+        path = isobaric(0.4, (0.05,))
+        pair = [solve_case(make_case(model=model, path=path, **each)) for each in (S1, two)]
+        one, other = (solution.states["force"][0] for solution in pair)
+        assert other == pytest.approx(one, rel=1e-9)
+
+
+def test_one_family_twists(make_case):
+    """Held it has a torque, and free a twist that takes it away; the mirrored one turns back."""
+    found = {}
+    for sense in (1, -1):
+        muscle = sleeved(6.35, senses=(sense,), threads=60)
+        for twist in ("held", "free"):
+            case = make_case(
+                model="cylinder",
+                path=isobaric(0.08, (0.0, 0.05)),
+                effects=Effects(twist=twist),
+                **{**S1, "muscle": muscle},
+            )
+            found[sense, twist] = solve_cylinder(case).states
+    for quantity, twist in (("torque", "held"), ("twist", "free")):
+        values = found[1, twist][quantity]
+        assert min(abs(values)) > 1e-3
+        assert found[-1, twist][quantity] == pytest.approx(-values, rel=1e-6)
+    assert found[1, "free"]["torque"] == pytest.approx([0, 0], abs=1e-6)
+    # held, one family of twice as many threads pulls as both do
+    both = solve_cylinder(make_case(model="cylinder", path=isobaric(0.08, (0.0, 0.05)), **S1))
+    assert found[1, "held"]["force"] == pytest.approx(both.states["force"], rel=1e-9)
