@@ -23,7 +23,7 @@ def main(arguments: list[str] | None = None) -> int:
     name = given[0] if given else ""
     if name not in names():
         _parser().parse_args(given or ["--help"])
-    program = import_module(f"workflow.programs.{name}")
+    program = import_module(f"workflow.programs.{_module(name)}")
     parser = argparse.ArgumentParser(prog=f"muscle {name}", description=program.__doc__)
     program.add_arguments(parser)
     try:
@@ -34,8 +34,13 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def names() -> list[str]:
-    """The programs there are."""
-    return sorted(file.stem for file in FOLDER.glob("*.py") if file.stem not in NO_PROGRAMS)
+    """The programs there are; a name of several words has hyphens."""
+    files = (file.stem for file in FOLDER.glob("*.py") if file.stem not in NO_PROGRAMS)
+    return sorted(name.replace("_", "-") for name in files)
+
+
+def _module(name: str) -> str:
+    return name.replace("-", "_")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -43,7 +48,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="muscle", description=__doc__)
     programs = parser.add_subparsers(required=True, metavar="PROGRAM")
     for name in names():
-        text = ast.get_docstring(ast.parse((FOLDER / f"{name}.py").read_bytes())) or ""
+        text = ast.get_docstring(ast.parse((FOLDER / f"{_module(name)}.py").read_bytes())) or ""
         programs.add_parser(name, help=text.partition("\n")[0])
     return parser
 

@@ -21,4 +21,6 @@ def run(given: argparse.Namespace) -> int:
         print(f"warning: {line}", file=sys.stderr)
     for line in explain.lines(plan):
         print(line)
+    for line in bench.understood(plan.study):
+        print(line)
     return 0

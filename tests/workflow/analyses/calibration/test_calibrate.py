@@ -118,10 +118,9 @@ def test_a_value_beyond_what_fits_between_the_layers_is_said(study):
     ("text", "said"),
     [
         ("", "no force"),
-        ("pressure_MPa,force_N\n0.3,1\n", "column contraction is missing"),
+        ("pressure_MPa,force_N\n0.3,1\n", "column contraction, stroke or length is missing"),
         ("pressure_MPa,contraction,force_N\n0.3,x,1\n", ":2: not all of it are numbers"),
-        ("pressure_MPa,contraction,force_N\n0.3,0,1\n0.3,0,nan\n", ":3: not all"),
-        ("pressure_MPa,contraction,force_N\n0.3,0,1\n0.3,0,2\n", "two forces at 0.3 MPa, 0"),
+        ("pressure_MPa,contraction,force_N\n0.3,0,1\n0.3,0,inf\n", ":3: not all"),
     ],
 )
 def test_a_file_that_is_no_map_is_refused(tmp_path, text, said):
