@@ -8,6 +8,7 @@ from solver.material import Thread
 from solver.memory import Memory
 from solver.numerics import Numerics
 from solver.rubber.rubber_law import RubberLaw
+from workflow.study.installation import Installation
 from workflow.study.limits import Limits
 from workflow.study.schema import CalibrationEntry, Scene
 from workflow.study.source import Source
@@ -23,6 +24,7 @@ class StudiedMuscle:
     thread: Thread | None
     memory: Memory | None = None  # of the rubber, in time
     limits: Limits = field(default_factory=Limits)  # of its materials
+    installation: Installation = field(default_factory=Installation)
     reference: tuple[str, ...] = ()  # names of the force maps that are of this muscle
 
 

@@ -226,6 +226,7 @@ class MaterialEntry(Entry):
     kappa: Number = 1000.0
     stretch_limit: Number | None = None
     memory: MemoryEntry | None = None
+    density: Number | None = None  # g/cm3
 
 
 def _numbers(value: object) -> tuple[object, ...]:
@@ -313,6 +314,11 @@ class MuscleEntry(Entry):
     thread_modulus: Number | None = None
     thread_diameter: Number | None = None
     thread_strength: Number | None = None
+    thread_density: Number | None = None  # g/cm3
+    fitting_length: Number | None = None
+    fitting_mass: Number | None = None  # g
+    dead_volume: Number | None = None  # mm3
+    ambient_pressure: Number | None = None
     material: Name | None = None
     reference: _some_of(*FORCE_MAPS) | None = None
 

@@ -26,6 +26,7 @@ from solver.rubber.rubber_law import LEAST_KAPPA, RubberLaw
 from workflow.study import checks, fit, in_time, layers, units
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices, shown
+from workflow.study.installation import Installation
 from workflow.study.layers import Wound
 from workflow.study.limits import Limits
 from workflow.study.schema import (
@@ -43,13 +44,15 @@ CAP_PER_WALL = 4  # length in the fitting by wall thickness, unless given (docs/
 SHAPE_KEYS = ("inner_diameter", "wall_thickness", "length", "cap_length")
 EA = "thread_stiffness"
 MODULUS = "thread_modulus"
-OF_THREAD = (EA, MODULUS, "thread_diameter", "thread_strength")
+OF_THREAD = (EA, MODULUS, "thread_diameter", "thread_strength", "thread_density")
+BUILT_IN = ("fitting_length", "fitting_mass", "dead_volume", "ambient_pressure")
+OF_INSTALLATION = (*BUILT_IN, "thread_density", "thread_diameter")
 BRAID_KEYS = ("layer_depths", "layers", "lead", "angle", "angle_of", *OF_THREAD)
 ANGLE_KEYS = ("lead", "angle", "angle_of")  # exactly one of them
 OF_LAYERS = ("threads", *ANGLE_KEYS, EA, MODULUS, "thread_diameter")  # that layers may share
 ALTERNATIVES = (("layers", "layer_depths"), (EA, MODULUS))  # of which there is one
 # What may change while a muscle stays the one that was measured: nobody has measured these.
-NOT_MEASURED = (*OF_THREAD, "reference")
+NOT_MEASURED = (*OF_THREAD, *BUILT_IN, "reference")
 # Values beside which another one can be judged alone
 ANY_SHAPE = {"inner_diameter": 1, "wall_thickness": 1, "length": 1, "cap_length": 0, "braid": None}
 
@@ -88,6 +91,7 @@ def load(path: Path | str, findings: Findings | None = None) -> Study:
     rubbers: dict[str, RubberLaw] = {}
     limits: dict[str, Limits] = {}
     memories: dict[str, Memory] = {}
+    weights: dict[str, Installation] = {}
     for name, material in file.materials.items():
         with found.gathering():
             if material.memory is not None:
@@ -98,12 +102,15 @@ def load(path: Path | str, findings: Findings | None = None) -> Study:
         with found.gathering():
             values = material.model_dump(include={"stretch_limit"})
             limits[name] = source.checked(("materials", name), Limits, values)
+            values = material.model_dump(include={"density"})
+            weights[name] = source.checked(("materials", name), Installation, values)
     variants: dict[str, Variant] = {}
     for name, variant in ({"default": VariantEntry()} | file.variants).items():
         with found.gathering():
             variants[name] = _variant(source, found, file, name, variant)
     spread = variants["default"].numerics.spread if "default" in variants else Spread()
-    resolved = _Muscles(source, found, file.muscles, rubbers, limits, spread.modulus)
+    of_materials = rubbers, limits, weights
+    resolved = _Muscles(source, found, file.muscles, *of_materials, spread.modulus)
     muscles: dict[str, StudiedMuscle] = {}
     for name in file.muscles:
         with found.gathering():
@@ -146,7 +153,8 @@ def _fit(study: Study, name: str) -> CalibrationEntry:
 def _rubber(source: Source, found: Findings, name: str, entry: MaterialEntry) -> RubberLaw:
     """The rubber of an entry; a bulk modulus that was left out is not to blame."""
     keys = ("materials", name)
-    law, values = LAWS[entry.law], entry.model_dump(exclude={"stretch_limit", "law", "memory"})
+    unread = {"stretch_limit", "density", "law", "memory"}
+    law, values = LAWS[entry.law], entry.model_dump(exclude=unread)
     refused = list(law.out_of_range(values))
     for refusal in refused:
         found.add(source.refuse((*keys, refusal.field), refusal.value, refusal.allowed))
@@ -187,11 +195,12 @@ class _Muscles:
         entries: Mapping[str, MuscleEntry],
         rubbers: Mapping[str, RubberLaw],
         limits: Mapping[str, Limits],
+        weights: Mapping[str, Installation],
         modulus: float,
     ) -> None:
         self.source, self.findings = source, findings
         self.entries, self.rubbers = entries, rubbers
-        self.limits, self.modulus = limits, modulus
+        self.limits, self.weights, self.modulus = limits, weights, modulus
         self._complete: dict[str, dict[str, Any]] = {}
         self._built: dict[str, StudiedMuscle] = {}
         self._tried: set[str] = set()
@@ -277,11 +286,17 @@ class _Muscles:
             self._checked(name, partial(fit.check, *every), {}, {})
             limits["room"] = fit.note(*every, self.modulus)
         material = values["material"]
-        if material not in self.limits:
+        if not (material in self.limits and material in self.weights):
             raise AlreadyRefused
         return StudiedMuscle(
             material=material,
             limits=self._checked(name, partial(replace, self.limits[material]), limits, {}),
+            installation=self._checked(
+                name,
+                partial(replace, self.weights[material]),
+                {key: values[key] for key in OF_INSTALLATION if key in values},
+                {},
+            ),
             reference=values.get("reference", ()),
             **made,
         )

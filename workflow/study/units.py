@@ -63,6 +63,12 @@ USUAL = OF_RUBBER | {
     "report_pressure": PRESSURE,
     "contraction": Usual("", 0.01, 0.6, {"%": 0.01}),
     "tolerance": Usual("", 1e-6, 0.999, {"%": 0.01}),
+    "density": Usual("g/cm3", 0.5, 10, {"kg/m3": 1e-3}),
+    "thread_density": Usual("g/cm3", 0.5, 10, {"kg/m3": 1e-3}),
+    "fitting_length": Usual("mm", 1, 1000, LENGTHS),
+    "fitting_mass": Usual("g", 0.01, 10_000, {"kg": 1e3}),
+    "dead_volume": Usual("mm3", 1, 1e7, {"ml": 1e3, "l": 1e6}),
+    "ambient_pressure": Usual("MPa", 0.03, 0.5, STRESSES | {"bar": 0.1}),
     "memory": Usual("MB", 100, 1e6, {"GB": 1e3, "kB": 1e-3}),
     "modulus": Usual("MPa", 10, 1e6, {"GPa": 1e3, "Pa": 1e-6}),
 }
