@@ -17,6 +17,7 @@ include: "workflow/rules/solve.smk"
 include: "workflow/rules/gather.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/fields.smk"
+include: "workflow/rules/answers.smk"
 include: "workflow/rules/analyses.smk"
 include: "workflow/rules/benchmark.smk"
 include: "workflow/rules/pages.smk"
@@ -30,6 +31,7 @@ rule all:
         map(record_of, PLAN.cases),  # else one that was deleted would not be missed
         expand("results/muscles/{muscle}.step", muscle=PLAN.shown),
         expand("results/fields/{file}", file=FIELD_FILES),
+        sheets(),
         "results/dataset.nc",
         deviations(),
         "results/complete.txt",

@@ -15,8 +15,8 @@ from solver.load_path import LoadPath, PathKind
 from solver.models import MODELS
 from solver.record import Solution
 from solver.status import StateStatus
-from workflow.answers.quantities import CONTRACTION, FORCE, KINDS, PRESSURE, read
-from workflow.answers.quick import HIGHEST, Quick
+from workflow.answers.quantities import CONTRACTION, FORCE, HIGHEST, KINDS, PRESSURE, read
+from workflow.answers.quick import Quick
 from workflow.answers.store import Store
 from workflow.data.strain import judged
 from workflow.plan import model_choice

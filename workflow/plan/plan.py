@@ -18,10 +18,11 @@ from solver.case import Case, digest
 from solver.load_path import ZERO_FORCE, LoadPath, PathKind
 from solver.models import MODELS
 from workflow.plan import model_choice
+from workflow.plan.sheet_stops import stops_to
 from workflow.study import in_time
 from workflow.study.contents import Study, Variant
 from workflow.study.errors import Findings, StudyError
-from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
+from workflow.study.schema import HELD_KEY, SHEET, SWEPT_KEY, Scene
 from workflow.study.study import load
 
 FIELDS = {"stress", "deformed_shape"}
@@ -239,11 +240,14 @@ def _paths(
         return
     place = Place(scene.path, muscle, model, label, held)
     has_zero = MODELS[model].threshold or place.group == "isobaric"
+    stops, wanted = scene.swept, set(scene.quantities)
+    if SHEET in wanted:
+        stops = tuple(sorted({*stops, *stops_to(stops[-1])}))
     values = {
         "kind": scene.path,
         "held": held,
-        "stops": scene.swept,
-        "zero_force": has_zero and bool(ZERO_FORCE.keys() & set(scene.quantities)),
+        "stops": stops,
+        "zero_force": has_zero and bool({*ZERO_FORCE, SHEET} & wanted),
     }
     named = {"held": HELD_KEY[scene.path], "stops": SWEPT_KEY[scene.path]}
     yield place, study.source.checked(("scenes", name), LoadPath, values, named)
@@ -280,13 +284,21 @@ def _case(
             "model": place.model,
             "effects": effects,
             "numerics": variant.numerics,
-            "fields_at": scene.swept if FIELDS.intersection(scene.quantities) else (),
+            "fields_at": _fields_at(scene, place, path),
             "memory": muscle.memory if scene.in_time else None,
         },
         {"model": "models", "stops": SWEPT_KEY[scene.kind]},
     )
     _check_mesh(study, place, variant)
     return case
+
+
+def _fields_at(scene: Scene, place: Place, path: LoadPath) -> tuple[float, ...]:
+    """Stops at which fields are recorded: all that the scene names; of a sheet the last."""
+    if FIELDS & set(scene.quantities):
+        return scene.swept
+    wanted = SHEET in scene.quantities and bool(MODELS[place.model].fields)
+    return path.stops[-1:] if wanted else ()
 
 
 # What a study has written if it has not written the setting of the mesh that cannot be met

@@ -62,6 +62,13 @@ def for_readers(name: str, rows: pd.DataFrame, page: str) -> pd.DataFrame | None
     return chosen
 
 
+def write_beside(output: Path, title: str, caption: str) -> None:
+    """A page of the picture and the table of the same name beside it."""
+    words = Path(__file__).with_name(f"{caption}.rst")
+    files = [output.with_suffix(".png")], [output.with_suffix(".csv")]
+    write(output.with_suffix(".html"), title, words, *files)
+
+
 def picture(path: Path) -> str:
     """A PNG file inside the page."""
     data = base64.b64encode(path.read_bytes()).decode()

@@ -17,6 +17,7 @@ from workflow.study.schema import (
     FORCE_MAPS,
     HELD_KEY,
     QUANTITIES,
+    SHEET,
     SWEPT_KEY,
     CalibrationEntry,
     Scene,
@@ -65,9 +66,17 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
     factors = [HELD_KEY[asked.path], SWEPT_KEY[asked.path]]
     for key in ("pressure", "contraction", "load"):
         value = _as_written(getattr(asked, key))
+        if key == "load" and SHEET in asked.quantities and key not in factors:
+            if asked.load is not None and not (len(asked.load) == 1 and asked.load[0] > 0):
+                yield source.refuse((*keys, key), value, "one load > 0 (N), of the sheet")
+            continue
         if (value is None) == (key in factors):
             needed = "must be given" if value is None else "is not used"
             yield source.refuse((*keys, key), value, f"this key {needed} on an {asked.path} path")
+    of_sheet = asked.contraction if SHEET in asked.quantities else None
+    if asked.path == "isobaric" and of_sheet and of_sheet[-1] <= 0:
+        allowed = "contractions up to about where it pulls no more, for a sheet"
+        yield source.refuse((*keys, "contraction"), _as_written(of_sheet), allowed)
     for quantity in asked.quantities:
         allowed = _quantity(asked, quantity)
         if allowed:
@@ -94,7 +103,7 @@ def _as_written(value: Any) -> Any:
 
 def _quantity(asked: Scene, quantity: str) -> str:
     """What is allowed in place of a quantity that cannot be had; empty if it can."""
-    path = ZERO_FORCE.get(quantity, asked.path)
+    path = (ZERO_FORCE | {SHEET: "isobaric"}).get(quantity, asked.path)
     if path != asked.path:
         return f"this quantity only on an {path} path"
     for model in asked.models or ():

@@ -53,9 +53,11 @@ ASKED = (  # those from stress on are solved for or written only when asked for
     "deformed_shape",
 )
 FITTED = tuple(m for m in MODELS if MODELS[m].mesh and not MODELS[m].only_for)  # not too dear
+SHEET = "sheet"  # the quantity that asks for the data sheet of a muscle
 QUANTITIES = {  # models that can give it
     **{name: tuple(m for m in MODELS if name in MODELS[m].quantities) for name in ASKED},
     **{name: tuple(MODELS) for name in ZERO_FORCE},
+    SHEET: tuple(m for m in MODELS if {"volume", "stiffness"} <= set(MODELS[m].quantities)),
 }
 FORCE_MAPS = ("festo_musclesim", "martens2017")  # read by workflow/data/reference.py
 MOST_THREADS = 10_000  # more is a typing error
