@@ -222,10 +222,10 @@ def _measures(studied: StudiedMuscle) -> Iterator[Row]:
     tube = area * (muscle.length + 2 * muscle.cap_length) / 1000  # cm3
     masses = {"density": built.density and tube * built.density}
     if muscle.braid is not None:
-        lengths = [muscle.length / math.cos(angle) for angle in muscle.braid.layer_angles]
+        lengths = [n.threads * muscle.length * math.hypot(1, n.tangent) for n in muscle.layers]
         known = built.thread_diameter and built.thread_density
         section = math.pi / 4 * (built.thread_diameter or math.nan) ** 2
-        all_threads = muscle.braid.threads * sum(lengths) * section / 1000
+        all_threads = sum(lengths) * section / 1000
         masses["thread_diameter and thread_density"] = known and (
             all_threads * (built.thread_density or math.nan)
         )
