@@ -8,7 +8,7 @@ from solver.status import CaseStatus, StateStatus
 from workflow.plan.plan import plan
 from workflow.study.study import load
 
-STUDY = """\
+MUSCLE = """\
 materials:
   nbr: {c10: 0.345083, c01: 0.083805}
 muscles:
@@ -21,16 +21,19 @@ muscles:
     lead: 144
     thread_stiffness: 315
     material: nbr
+"""  # how most studies of the tests begin
+STUDY = f"""\
+{MUSCLE}\
     reference: [festo_musclesim, martens2017]
-  bare: {base: one, threads: none}
+  bare: {{base: one, threads: none}}
 variants:
-  paper: {effects: {end: butt, threads: two_way}}
+  paper: {{effects: {{end: butt, threads: two_way}}}}
 scenes:
   curves:
     path: isobaric
     muscles: [one]
     pressure: [0.2, 0.3]
-    contraction: {from: 0, to: 0.1, step: 0.01}
+    contraction: {{from: 0, to: 0.1, step: 0.01}}
     models: [membrane, solid]
   few:
     path: isobaric
@@ -67,6 +70,13 @@ def value(key, variable, state):
     return number / 2**33 if "stretch" in variable else number
 
 
+def converged(states, **others):
+    """A solution in all of whose states there is an equilibrium; ``others`` are said otherwise."""
+    count = len(next(iter(states.values())))
+    usual = {"status": CaseStatus.CONVERGED, "reason": "", "states": states}
+    return Solution(**usual | {"state_status": [StateStatus.CONVERGED] * count} | others)
+
+
 def write_records(found, folder, failed=()):
     """Records of all cases; of those that failed only the first two states are reached."""
     folder.mkdir(exist_ok=True)
@@ -80,10 +90,7 @@ def write_records(found, folder, failed=()):
         status = [
             StateStatus.CONVERGED if k < reached else StateStatus.NOT_REACHED for k in range(count)
         ]
-        solution = Solution(
-            status=CaseStatus.STALLED if key in failed else CaseStatus.CONVERGED,
-            reason="no step\nworked, at all" if key in failed else "",
-            states=states,
-            state_status=status,
-        )
+        stalled = {"status": CaseStatus.STALLED, "reason": "no step\nworked, at all"}
+        others = stalled if key in failed else {}
+        solution = converged(states, state_status=status, **others)
         record.write(folder / f"{key}.h5", planned_case.case, solution)

@@ -57,7 +57,7 @@ def curve(
         raise KeyError(f"one of {', '.join(kinds)} must be given, not {', '.join(held) or 'none'}")
     ((control, value),) = held.items()
     table = _read(path)
-    wanted = {"path": kinds[control], "muscle": muscle, "model": model, "variant": variant}
+    wanted = {"path": kinds[control].value, "muscle": muscle, "model": model, "variant": variant}
     for name, label in (wanted | {"held": value}).items():
         _check(control if name == "held" else name, label, table.curves[name])
         table = table.part(table.curves[name] == label)

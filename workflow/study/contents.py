@@ -1,9 +1,12 @@
 """What a study file says, once it is read: muscles, variants, scenes and calibrations by name."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from geometry.muscle import Muscle
+from solver.case import Case
 from solver.effects import Effects
+from solver.load_path import LoadPath
 from solver.material import Thread
 from solver.memory import Memory
 from solver.numerics import Numerics
@@ -26,6 +29,17 @@ class StudiedMuscle:
     limits: Limits = field(default_factory=Limits)  # of its materials
     installation: Installation = field(default_factory=Installation)
     reference: tuple[str, ...] = ()  # names of the force maps that are of this muscle
+
+    def case(self, path: LoadPath, model: str, **others: Any) -> Case:
+        """A curve of it by a model; ``others`` are effects, numerics and fields of the case."""
+        return Case(
+            muscle=self.muscle,
+            rubber=self.rubber,
+            thread=self.thread,
+            path=path,
+            model=model,
+            **others,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

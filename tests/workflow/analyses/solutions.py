@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from solver.record import Solution, unreached
-from solver.status import CaseStatus, StateStatus
+from solver.record import unreached
 from workflow.analyses.analysis import Solved
+
+from ..synthetic import converged
 
 OF_MODEL = {"solid": 1.0, "membrane": 1.004, "cylinder": 1.03, "cell": 1.02, "geometric": 1.3}
 WALL = {  # two triangles: a wall from R = 10 to 12 and Z = 0 to 30, a little deformed
@@ -49,14 +50,4 @@ def made_up(asked):
         "cutbacks": np.full(count, chance.integers(0, 2)).astype(float),
     }
     fields = {path.stops.index(stop): WALL for stop in case.fields_at if case.model == "solid"}
-    return Solved(
-        asked,
-        Solution(
-            status=CaseStatus.CONVERGED,
-            reason="",
-            states=states,
-            state_status=[StateStatus.CONVERGED] * count,
-            fields=fields,
-            unknowns=1000 * mesh**2,
-        ),
-    )
+    return Solved(asked, converged(states, fields=fields, unknowns=1000 * mesh**2))

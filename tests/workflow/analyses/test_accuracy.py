@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from solver.record import Solution, unreached
-from solver.status import CaseStatus, StateStatus
+from solver.record import unreached
+from solver.status import StateStatus
 from workflow.analyses.accuracy import cases
 from workflow.analyses.accuracy.errors import (
     exponent,
@@ -22,6 +22,8 @@ from workflow.analyses.analysis import Solved
 from workflow.plan.mesh_error import COLUMNS
 from workflow.study.errors import StudyError
 from workflow.study.study import load
+
+from ..synthetic import converged
 
 STUDY = Path(__file__).parents[3] / "config" / "config.yaml"
 ORDER = {"membrane": 4.0, "solid": 2.5}
@@ -81,11 +83,7 @@ def made_up(asked) -> Solved:
     states["inner_diameter_inflated"] = 30 * (1 + error / LARGEST) + 0 * contraction
     states["stiffness"] = np.full(path.states, 10.0)
     states["iterations"] = np.full(path.states, 3.0)
-    status = [StateStatus.CONVERGED] * path.states
-    return Solved(
-        asked,
-        Solution(status=CaseStatus.CONVERGED, reason="", states=states, state_status=status),
-    )
+    return Solved(asked, converged(states))
 
 
 @pytest.fixture(scope="module")

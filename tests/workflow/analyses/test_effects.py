@@ -6,14 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solver.record import Solution, unreached
-from solver.status import CaseStatus, StateStatus
+from solver.record import unreached
+from solver.status import StateStatus
 from workflow.analyses.analysis import Solved
 from workflow.analyses.effects import weigh
 from workflow.analyses.effects.cases import REGIMES, SETUPS, cases
 from workflow.analyses.effects.table import SWITCHES, table
 from workflow.plan import effect_costs
 from workflow.study.study import load
+
+from ..synthetic import converged
 
 STUDY = Path(__file__).parents[3] / "config/config.yaml"
 
@@ -49,12 +51,7 @@ def solved(entry, force, lost=0):
     status = [StateStatus.CONVERGED] * entry.case.path.states
     for k in range(stops - lost, stops):
         status[k] = StateStatus.NOT_REACHED
-    return Solved(
-        entry,
-        Solution(
-            status=CaseStatus.CONVERGED, reason="", states=states, state_status=status, unknowns=10
-        ),
-    )
+    return Solved(entry, converged(states, state_status=status, unknowns=10))
 
 
 def test_changes_and_savings(asked):

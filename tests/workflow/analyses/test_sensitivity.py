@@ -8,13 +8,14 @@ import pytest
 
 from solver.models.cylinder import curve
 from solver.record import unreached
-from solver.status import StateStatus
 from workflow.analyses.analysis import AnalysisCase, Solved
 from workflow.analyses.sensitivity import cases, figures
 from workflow.analyses.sensitivity import table as tables
 from workflow.analyses.sensitivity.cases import STEP, Normal
 from workflow.analyses.sensitivity.table import DESIGN, OUTPUTS, UNCERTAIN
 from workflow.study.study import load
+
+from ..synthetic import converged
 
 CONFIG = Path(__file__).parents[3] / "config" / "config.yaml"
 
@@ -102,15 +103,12 @@ def test_elasticities_and_shares_are_those_of_the_function(normal, few, monkeypa
 
 def solution(asked):
     """Records in which the force is the pressure and nothing else changes."""
-    from solver.record import Solution
-    from solver.status import CaseStatus
 
     path = asked.case.path
     states = unreached(path.states)
     pressure = path.held if path.kind == "isobaric" else path.stops[0]
     states["force"][:], states["pressure"][:], states["contraction"][:] = pressure, 0.1, 0.2
-    good = [StateStatus.CONVERGED] * path.states
-    return Solution(status=CaseStatus.CONVERGED, reason="", states=states, state_status=good)
+    return converged(states)
 
 
 def test_the_seed_fixes_the_samples(normal, few):

@@ -9,13 +9,14 @@ import pytest
 from geometry import cell
 from geometry.cell import Box
 from geometry.mesh_settings import CellMesh
-from solver.record import Solution, unreached
-from solver.status import CaseStatus, StateStatus
+from solver.record import unreached
 from workflow.analyses import additions
 from workflow.analyses.analysis import Solved
 from workflow.analyses.threads import cases, figures, local, table
 from workflow.data.principal_stress import principal_of_six
 from workflow.study.study import load
+
+from ..synthetic import converged
 
 CONFIG = Path(__file__).parents[3] / "config" / "config.yaml"
 CORNER = np.zeros((1, 6))
@@ -35,11 +36,7 @@ def solved(asked):
         count = entry.case.path.states
         states = unreached(count)
         states["force"] = np.full(count, FORCE[str(entry.tags["layers"])])
-        status = [StateStatus.CONVERGED] * count
-        solution = Solution(
-            status=CaseStatus.CONVERGED, reason="", states=states, state_status=status
-        )
-        found.append(Solved(entry, solution))
+        found.append(Solved(entry, converged(states)))
     return found
 
 
@@ -85,13 +82,7 @@ def made_up(corners, stretch=1.02):
 
 
 def with_fields(asked, fields):
-    return Solution(
-        status=CaseStatus.CONVERGED,
-        reason="",
-        states=unreached(1),
-        state_status=[StateStatus.CONVERGED],
-        fields={0: fields},
-    )
+    return converged(unreached(1), fields={0: fields})
 
 
 def test_a_node_and_its_periodic_images_are_one(corners, muscle):

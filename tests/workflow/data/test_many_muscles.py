@@ -11,17 +11,15 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from solver import record
 from solver.load_path import LoadPath
 from solver.record import VARIABLES
-from solver.status import CaseStatus, StateStatus
 from workflow import data
 from workflow.data import dataset, tidy
 from workflow.data.records import Curve
 from workflow.data.states import Table
 from workflow.plan.plan import Place
 
-from ..synthetic import planned
+from ..synthetic import converged, planned
 
 MUSCLES, STATES = 300, 18
 MEGABYTE = 2**20
@@ -40,12 +38,7 @@ def curves_of(case, count):
         random = np.random.default_rng(number)
         stops = tuple(np.sort(random.uniform(0, 0.3, STATES)).tolist())
         path = LoadPath(kind="isobaric", held=0.2 + number / 1000, stops=stops)
-        solution = record.Solution(
-            status=CaseStatus.CONVERGED,
-            reason="",
-            states={name: random.normal(size=STATES) for name in VARIABLES},
-            state_status=[StateStatus.CONVERGED] * STATES,
-        )
+        solution = converged({name: random.normal(size=STATES) for name in VARIABLES})
         place = Place("isobaric", f"m{number}", "solid", "default", path.held)
         made = replace(case, path=path, fields_at=())
         yield Curve(made, solution, stops, place)

@@ -1,6 +1,7 @@
 """Fields as VTU: what meshio reads back, whole or absent, the same bytes every time."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import meshio
 import numpy as np
@@ -9,12 +10,13 @@ import pytest
 from solver import record
 from solver.case import Case
 from solver.load_path import LoadPath
-from solver.record import Solution, unreached
-from solver.status import CaseStatus, StateStatus
+from solver.record import unreached
 from workflow.data import paraview
-from workflow.plan.plan import plan
+from workflow.plan.plan import Place, plan
 from workflow.study.errors import StudyError
 from workflow.study.study import load
+
+from ..synthetic import converged
 
 CONFIG = Path(__file__).parents[3] / "config" / "config.yaml"
 CORNERS = np.array([[10, 0, 15, 0], [12, 0, 16.5, 0], [10, 5, 15, 4]], dtype=float)
@@ -25,13 +27,7 @@ STRESS = np.array([[-0.3, 0.1, 0.2, 1.0], [0, 0, 0.5, 0.8], [-0.3, 0, -0.4, -0.6
 def recorded(tmp_path, make_case):
     path = LoadPath(kind="isobaric", held=0.3, stops=(0.0, 0.1))
     case: Case = make_case(model="solid", path=path, fields_at=(0.1,))
-    solution = Solution(
-        status=CaseStatus.CONVERGED,
-        reason="",
-        states=unreached(2),
-        state_status=[StateStatus.NOT_REACHED] * 2,
-        fields={1: {"corners": CORNERS, "stress": STRESS}},
-    )
+    solution = converged(unreached(2), fields={1: {"corners": CORNERS, "stress": STRESS}})
     file = tmp_path / "case.h5"
     record.write(file, case, solution)
     return file
@@ -73,6 +69,18 @@ def test_only_scenes_that_ask_for_stress_have_files():
     assert sorted(files) == [f"dmsp20_solid_fine_isobaric_{p}_0.1.vtu" for p in (0.2, 0.3, 0.4)]
 
 
+def test_a_stop_that_a_path_comes_to_twice_has_two_files():
+    path = SimpleNamespace(stops=(0.0, 0.1, 0.2, 0.1))
+    case = SimpleNamespace(path=path, fields_at=(0.1, 0.2))
+    place = Place("isobaric", "one", "solid", "default", 0.3)
+    asked = SimpleNamespace(
+        scenes={"loop": {place: "key"}}, cases={"key": SimpleNamespace(case=case)}
+    )
+    found = {name: state for name, (_, state) in paraview.files(asked).items()}
+    start = "one_solid_default_isobaric_0.3"
+    assert found == {f"{start}_0.1_1.vtu": 1, f"{start}_0.2.vtu": 2, f"{start}_0.1_3.vtu": 3}
+
+
 def test_a_cell_comes_back_as_a_piece_of_the_tube(tmp_path, make_case):
     path = LoadPath(kind="isobaric", held=0.3, stops=(0.1,))
     before = np.array([[10, 0, 0], [12, 0, 0], [10, 0.1, 0], [10, 0, 2.4]], dtype=float)
@@ -81,13 +89,7 @@ def test_a_cell_comes_back_as_a_piece_of_the_tube(tmp_path, make_case):
         "stress": np.tile([-0.3, 1.0, 0.2, 0, 0, 0], (4, 1)),
         "threads": np.ones((4, 4)),
     }
-    solution = Solution(
-        status=CaseStatus.CONVERGED,
-        reason="",
-        states=unreached(1),
-        state_status=[StateStatus.NOT_REACHED],
-        fields={0: fields},
-    )
+    solution = converged(unreached(1), fields={0: fields})
     record.write(tmp_path / "c.h5", make_case(model="cell", path=path, fields_at=(0.1,)), solution)
     paraview.write(tmp_path / "c.h5", 0, tmp_path / "c.vtu")
     mesh = meshio.read(tmp_path / "c.vtu")

@@ -7,14 +7,16 @@ import pytest
 
 from solver.effects import Effects
 from solver.load_path import LoadPath
-from solver.record import Solution, unreached
-from solver.status import CaseStatus, Flag, StateStatus
+from solver.record import unreached
+from solver.status import Flag
 from workflow.data import strain
 from workflow.plan.plan import plan
 from workflow.run import failures
 from workflow.study.errors import StudyError
 from workflow.study.limits import Limits
 from workflow.study.study import load
+
+from ..synthetic import converged
 
 STUDY = """
 materials:
@@ -52,13 +54,7 @@ def solved(make_case):
         states["force"][:] = 1.0
         states["thread_stretch_max"][:] = thread
         states["rubber_stretch_max"][:] = rubber
-        solution = Solution(
-            status=CaseStatus.CONVERGED,
-            reason="",
-            states=states,
-            state_status=[StateStatus.CONVERGED] * 4,
-        )
-        return make_case(model="solid", path=path, **changes), solution
+        return make_case(model="solid", path=path, **changes), converged(states)
 
     return made
 

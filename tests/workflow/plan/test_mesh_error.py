@@ -11,11 +11,12 @@ from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.numerics import Numerics
 from solver.record import Solution, unreached
-from solver.status import CaseStatus, StateStatus
 from workflow.analyses.accuracy.errors import pair_error, share
 from workflow.plan import mesh_error
 from workflow.plan.plan import plan
 from workflow.study.study import load
+
+from ..synthetic import converged
 
 STUDY = Path(__file__).parents[3] / "config" / "config.yaml"
 LARGEST = 0.0025  # share of the largest force: a quarter of a tolerance of 1 %
@@ -36,12 +37,7 @@ def planned():
 def solution(**values: list[float]) -> Solution:
     count = len(next(iter(values.values())))
     states = unreached(count) | {name: np.array(each) for name, each in values.items()}
-    return Solution(
-        status=CaseStatus.CONVERGED,
-        reason="",
-        states=states,
-        state_status=[StateStatus.CONVERGED] * count,
-    )
+    return converged(states)
 
 
 def test_every_curve_of_the_scenes_has_a_known_error_that_is_small(planned):

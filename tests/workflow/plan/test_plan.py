@@ -7,20 +7,12 @@ import pytest
 from workflow.plan.plan import Place, plan
 from workflow.study.study import load
 
-STUDY = """\
-materials:
-  nbr: {c10: 0.345083, c01: 0.083805}
-  silicone: {c10: 0.028, c01: 0.018}
-muscles:
-  one:
-    inner_diameter: 20
-    wall_thickness: 2
-    length: 300
-    layer_depths: [0.3, 0.9]
-    threads: 60
-    lead: 144
-    thread_stiffness: 315
-    material: nbr
+from ..synthetic import MUSCLE
+
+SILICONE = "  silicone: {c10: 0.028, c01: 0.018}\n"
+STUDY = (
+    MUSCLE.replace("muscles:", f"{SILICONE}muscles:")
+    + """\
   soft: {base: one, material: silicone}
 variants:
   paper: {effects: {end: butt, threads: two_way}}
@@ -42,6 +34,7 @@ scenes:
     pressure: [0.2, 0.3]
     models: [membrane]
 """
+)
 
 
 @pytest.fixture

@@ -117,15 +117,9 @@ def _normal(study: Study) -> Iterator[AnalysisCase]:
         kind=PathKind.ISOMETRIC, held=CONTRACTION, stops=(PRESSURE,), zero_force=True
     )
     for setting in settings():
-        curve = Case(
-            muscle=ours.muscle,
-            rubber=ours.rubber,
-            thread=ours.thread,
-            path=LoadPath(kind=PathKind.ISOBARIC, held=PRESSURE, stops=setting.stops),
-            model=setting.model,
-            effects=setting.effects,
-            numerics=setting.numerics,
-        )
+        path = LoadPath(kind=PathKind.ISOBARIC, held=PRESSURE, stops=setting.stops)
+        numerics, effects = setting.numerics, setting.effects
+        curve = ours.case(path, setting.model, effects=effects, numerics=numerics)
         label = f"{setting.model} {setting.name}".strip()
         tags = setting.tags("curve") | {"maps": " ".join(ours.reference)}
         yield AnalysisCase(curve, f"{label}, {setting.set}", tags)

@@ -64,16 +64,8 @@ class ForwardModel:
         stops: Iterable[float],
     ) -> pd.DataFrame:
         """Rows of the table of states, at rising contractions."""
-        muscle = changed(self.muscle, values)
-        case = Case(
-            muscle=muscle.muscle,
-            rubber=muscle.rubber,
-            thread=muscle.thread,
-            path=LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=tuple(stops)),
-            model=model,
-            effects=self.variant.effects,
-            numerics=self.variant.numerics,
-        )
+        path = LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=tuple(stops))
+        case = changed(self.muscle, values).case(path, model, **vars(self.variant))
         if case.key not in self.solved:
             try:
                 found, _ = solve(case, self._mesh(case), self.folder / "log", self.limits)

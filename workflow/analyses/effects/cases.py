@@ -108,12 +108,6 @@ def _case(study: Study, regime: Regime, setup: Setup, path: LoadPath) -> Case:
         path = LoadPath(kind=path.kind, held=path.held, stops=path.stops)  # Eq. (1) has none
     if regime.stiffness and setup.model == "cell":  # a layer slackens further on: slow
         path = replace(path, stops=path.stops[:3])
-    return Case(
-        muscle=muscle.muscle,
-        rubber=muscle.rubber,
-        thread=Thread(stiffness=regime.stiffness) if regime.stiffness else muscle.thread,
-        path=path,
-        model=setup.model,
-        effects=setup.effects,
-        numerics=numerics,
-    )
+    if regime.stiffness:
+        muscle = replace(muscle, thread=Thread(stiffness=regime.stiffness))
+    return muscle.case(path, setup.model, effects=setup.effects, numerics=numerics)

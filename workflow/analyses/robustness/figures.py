@@ -156,7 +156,7 @@ def _cube_effort(ax: Any, cube: pd.DataFrame) -> None:
 
 def worst(solved: Sequence[Solved], table: pd.DataFrame) -> Figure:
     """The deformed walls, near the cap, of the cases with the smallest det F."""
-    by_record = {entry.asked.case.key: entry for entry in solved if entry.solution.fields}
+    by_record = {one.asked.case.key: one for one in solved if one.solution.fields}
     rows = table[table["record"].isin(by_record)].nsmallest(WORST, "smallest det F at nodes")
     figure, axes = style.panels(style.FULL, 6.6, 3, 2, gap=(0.45, 0.75))
     for ax, (_, row) in zip(axes.flat, rows.iterrows(), strict=False):
@@ -174,9 +174,9 @@ def worst(solved: Sequence[Solved], table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _wall(ax: Any, entry: Solved, row: pd.Series) -> None:
-    corners = stress.wall(next(iter(entry.solution.fields.values())))
-    muscle = entry.asked.case.muscle
+def _wall(ax: Any, one: Solved, row: pd.Series) -> None:
+    corners = stress.wall(next(iter(one.solution.fields.values())))
+    muscle = one.asked.case.muscle
     mesh = Triangulation(
         corners["z [mm]"],
         corners["r [mm]"],
@@ -195,7 +195,7 @@ def _wall(ax: Any, entry: Solved, row: pd.Series) -> None:
     ax.set_ylim(seen.min() - 1, seen.max() + 1)
     ax.set_aspect("equal", adjustable="box", anchor="W")
     ax.set_title(
-        f"{entry.asked.label}: {row['status']}, det F {row['smallest det F']:.2f}, "
+        f"{one.asked.label}: {row['status']}, det F {row['smallest det F']:.2f}, "
         f"at nodes {row['smallest det F at nodes']:.2f}",
         fontsize=7,
         fontweight="normal",

@@ -15,8 +15,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from geometry.mesh_settings import CellMesh
-from geometry.muscle import Muscle
-from solver.case import Case
 from solver.effects import Effects, Layers, Twist
 from solver.load_path import LoadPath, PathKind
 from solver.numerics import Numerics
@@ -40,9 +38,9 @@ def cases(study: Study) -> list[AnalysisCase]:
 def of_claim(study: Study) -> list[AnalysisCase]:
     """Claim C8: silicone at the claim's pressure, by wall, with single threads and smeared."""
     return [
-        entry
-        for entry in _correction(study)
-        if entry.tags["rubber"] == "silicone" and entry.tags["pressure [MPa]"] == PRESSURE
+        one
+        for one in _correction(study)
+        if one.tags["rubber"] == "silicone" and one.tags["pressure [MPa]"] == PRESSURE
     ]
 
 
@@ -60,14 +58,10 @@ def _case(
     twist: Twist = Twist.HELD,
 ) -> AnalysisCase:
     ours = study.muscles[MUSCLES[rubber]]
-    muscle: Muscle = replace(ours.muscle, wall_thickness=wall)
     mesh = CellMesh() if size is None else CellMesh(thread_size=size, body_size=BODY_SIZE)
-    case = Case(
-        muscle=muscle,
-        rubber=ours.rubber,
-        thread=ours.thread,
-        path=LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=stops),
-        model="cell",
+    case = replace(ours, muscle=replace(ours.muscle, wall_thickness=wall)).case(
+        LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=stops),
+        "cell",
         effects=Effects(layers=layers, twist=twist),
         numerics=Numerics(cell=mesh),
         fields_at=fields_at,

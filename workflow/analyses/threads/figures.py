@@ -42,11 +42,11 @@ def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[s
 def shown(solved: Sequence[Solved]) -> dict[str, Solved]:
     """By rubber the case with single threads whose fields the picture shows, where it has them."""
     return {
-        str(entry.asked.tags["rubber"]): entry
-        for entry in solved
-        if entry.asked.case.fields_at
-        and entry.solution.fields
-        and entry.asked.tags["layers"] == Layers.DISCRETE
+        str(one.asked.tags["rubber"]): one
+        for one in solved
+        if one.asked.case.fields_at
+        and one.solution.fields
+        and one.asked.tags["layers"] == Layers.DISCRETE
     }
 
 
@@ -56,8 +56,8 @@ def local(shown: dict[str, Solved], rows: pd.DataFrame) -> Figure:
         style.FULL, 4.3, 2, max(len(shown), 1), gap=(0.75, 0.6), height_ratios=[2, 1]
     )
     lower = []
-    for k, (rubber, entry) in enumerate(shown.items()):
-        _cut(figure, figure.add_subplot(places[0, k]), rubber, entry)
+    for k, (rubber, one) in enumerate(shown.items()):
+        _cut(figure, figure.add_subplot(places[0, k]), rubber, one)
         lower.append(figure.add_subplot(places[1, k]))
         _tension(lower[-1], rows[rows["rubber"] == rubber])
     style.grow(figure, bottom=style.LEGEND_ROW)
@@ -73,9 +73,9 @@ def local(shown: dict[str, Solved], rows: pd.DataFrame) -> Figure:
     return figure
 
 
-def _cut(figure: Figure, ax: Any, rubber: str, entry: Solved) -> None:
-    case, box = entry.asked.case, Box(entry.asked.case.muscle)
-    ((state, fields),) = entry.solution.fields.items()
+def _cut(figure: Figure, ax: Any, rubber: str, one: Solved) -> None:
+    case, box = one.asked.case, Box(one.asked.case.muscle)
+    ((state, fields),) = one.solution.fields.items()
     values = LinearNDInterpolator(*nodes(fields, box))
     inner, outer = case.muscle.inner_radius + NEAR_SURFACE, case.muscle.outer_radius - NEAR_SURFACE
     period = 2 * np.pi / box.sectors

@@ -50,10 +50,10 @@ def largest_stress(fields: dict[str, Array]) -> float:
     return float(principal_of_six(fields["stress"])[:, 2].reshape(-1, 4).mean(axis=1).max())
 
 
-def tension(entry: Solved) -> pd.DataFrame:
+def tension(one: Solved) -> pd.DataFrame:
     """Tension of one thread of each layer along the cell: mean over the tube it is spread over."""
-    case = entry.asked.case
-    (fields,) = entry.solution.fields.values()
+    case = one.asked.case
+    (fields,) = one.solution.fields.values()
     box, lattice = Box(case.muscle), _lattice()
     corners = fields["corners"].reshape(-1, 4, 6)
     threads = fields["threads"].reshape(-1, 4, 4)

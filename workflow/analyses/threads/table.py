@@ -39,7 +39,7 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
     largest stress of their rubber, and how many times that of smeared layers it is; in the set
     ``tension`` a row is a place along a thread instead.
     """
-    rows = pd.concat([_rows(entry) for entry in solved], ignore_index=True)
+    rows = pd.concat([_rows(one) for one in solved], ignore_index=True)
     smeared = rows[rows["layers"] == Layers.SMEARED]
     known, known_stress = (smeared.set_index(SAME)[name] for name in ("force [N]", STRESS))
     curves = [key for key in SAME if key != "contraction [1]"]
@@ -50,7 +50,7 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
     rows["share [1]"] = rows["change [N]"] / scale
     stress = known_stress.reindex(pd.MultiIndex.from_frame(rows[SAME])).to_numpy()
     rows[CONCENTRATION] = rows[STRESS] / stress
-    along = [_tension(entry) for entry in solved if entry.solution.fields]
+    along = [_tension(one) for one in solved if one.solution.fields]
     return pd.concat([rows, *along], ignore_index=True)
 
 

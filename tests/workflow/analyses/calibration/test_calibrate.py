@@ -14,20 +14,12 @@ from workflow.data import bench
 from workflow.study.errors import StudyError
 from workflow.study.study import load
 
+from ...synthetic import MUSCLE
+
 STEPS = (0.0, 0.05, 0.1, 0.15, 0.2)
-STUDY = """\
-materials:
-  nbr: {c10: 0.345083, c01: 0.083805}
-muscles:
-  one:
-    inner_diameter: 20
-    wall_thickness: 2
-    length: 300
-    layer_depths: [0.3, 0.9]
-    threads: 60
-    lead: 144
-    thread_stiffness: 315
-    material: nbr
+STUDY = (
+    MUSCLE
+    + """\
   bare: {base: one, threads: none}
 scenes:
   curves:
@@ -37,6 +29,7 @@ scenes:
     contraction: [0, 0.1]
     models: [membrane]
 """
+)
 FIT = "calibration: {mine: {muscle: one, reference: REFERENCE, report_pressure: [0.4]}}"
 
 
