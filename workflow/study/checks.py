@@ -39,7 +39,7 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
     """Names that exist, the factors that the path takes and no others, and their values."""
     source, asked, keys = study.source, study.scenes[name], ("scenes", name)
     for key in ("muscles", "variants"):
-        known = ["default"] * (key == "variants") + source.names(key)
+        known = dict.fromkeys(["default"] * (key == "variants") + source.names(key))
         for named in getattr(asked, key):
             if named not in known:
                 yield source.refuse((*keys, key), named, choices(named, known))
@@ -145,6 +145,9 @@ def calibration(study: Study, name: str) -> Iterator[StudyError]:
     made, muscles = study.muscles.get(entry.muscle), source.names("muscles")
     if entry.muscle not in muscles:
         yield source.refuse((*keys, "muscle"), entry.muscle, choices(entry.muscle, muscles))
+    elif group := source.groups.get(entry.muscle):
+        allowed = f"one muscle; of {entry.muscle} there are {choices(entry.muscle, group)}"
+        yield source.refuse((*keys, "muscle"), entry.muscle, allowed)
     elif made is not None and made.thread is None:
         yield source.refuse((*keys, "muscle"), entry.muscle, "a muscle with a braid")
     for key, (low, high) in entry.bounds:
@@ -218,13 +221,16 @@ def wound_angle(radians: float) -> Iterator[str]:
 
 def unusual(source: Source, file: StudyFile, muscles: Mapping[str, StudiedMuscle]) -> Iterator[str]:
     """Values that can be used but look as if something else was meant, each in a line."""
+    said: dict[Any, str] = {}  # once for each value of a line, of however many muscles of a sweep
     for keys, value in _written(file):
         guess = units.guess(keys[-1], value)
         if guess:
-            yield f"{source.place(keys)} = {shown(value)} is unusual; perhaps {guess}"
-    yield from dict.fromkeys(
-        line for name, made in muscles.items() for line in _unusual_braid(source, name, made)
-    )
+            text = f"{source.place(keys)} = {shown(value)} is unusual; perhaps {guess}"
+            said.setdefault((source.line(keys), keys[-1], shown(value)), text)
+    for name, made in muscles.items():
+        for keys, text in _unusual_braid(source, name, made):
+            said.setdefault((source.line(keys), made.thread), text)
+    yield from said.values()
     for name, asked in file.scenes.items():
         if re.match(r"fig\w*\d", name, re.IGNORECASE) and not figure_needs.drawn(name):
             known_figures = choices(name, figure_needs.NEEDS)
@@ -255,7 +261,7 @@ def _written(file: StudyFile) -> Iterator[tuple[Keys, Any]]:
         yield ("limits", key), getattr(file.limits, key)
 
 
-def _unusual_braid(source: Source, name: str, made: StudiedMuscle) -> Iterator[str]:
+def _unusual_braid(source: Source, name: str, made: StudiedMuscle) -> Iterator[tuple[Keys, str]]:
     braid, thread, tube = made.muscle.braid, made.thread, made.muscle
     if braid is None or thread is None:
         return
@@ -264,10 +270,11 @@ def _unusual_braid(source: Source, name: str, made: StudiedMuscle) -> Iterator[s
     total = sum(layer.threads * thread.stiffness * layer.share for layer in tube.layers)
     share = total / (3 * made.rubber.shear_modulus * area)
     if share < WEAK:
-        place = source.place(("muscles", source.owner(name, key), key))
+        keys = "muscles", source.owner(name, key), key
         yield (
-            f"{place} = {thread.stiffness:g} is unusual; all threads are softer than the rubber, "
-            f"{thread.stiffness:g} kN would be {1000 * thread.stiffness:g} N"
+            keys,
+            f"{source.place(keys)} = {thread.stiffness:g} is unusual; all threads are softer than "
+            f"the rubber, {thread.stiffness:g} kN would be {1000 * thread.stiffness:g} N",
         )
 
 

@@ -123,7 +123,7 @@ class _Reader:
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
             self._note(event, f"the tag {tag:.60} has no meaning here")
         if isinstance(event, yaml.ScalarEvent):
-            found = Node(_scalar(event.value) if event.implicit[0] else event.value, line)
+            found = Node(scalar(event.value) if event.implicit[0] else event.value, line)
         elif depth >= DEEPEST:
             raise UnreadableText([*self.problems, (line, "is nested too deeply")])
         else:
@@ -184,7 +184,7 @@ class _Reader:
         self.problems.append((event.start_mark.line + 1, problem))
 
 
-def _scalar(text: str) -> Any:
+def scalar(text: str) -> Any:
     """What a word without quotes is: nothing, true or false, a number, or a word."""
     if text in WORDS:
         return WORDS[text]

@@ -298,8 +298,34 @@ class LayerEntry(Entry):
     thread_diameter: Number | None = None
 
 
+def _counts(value: object) -> tuple[int, ...]:
+    counts = tuple(_whole(count) for count in _values(value))
+    for count in counts:
+        if not (is_count(count) and count <= MOST_THREADS):
+            raise refusal(f"integers >= 1, <= {MOST_THREADS}; not {count:g}")
+    return counts
+
+
+SWEPT = {  # keys of a muscle that a sweep may have, and what stands for them in names
+    "inner_diameter": "d",
+    "wall_thickness": "t",
+    "length": "l",
+    "threads": "n",
+    "lead": "lead",
+    "angle": "angle",
+    "thread_stiffness": "ea",
+    "material": "",
+}
+_OF_SWEEP = {"threads": Annotated[tuple[int, ...], BeforeValidator(_counts)], "material": Names}
+SweepEntry = create_model(
+    "SweepEntry",
+    __base__=Entry,
+    **{key: (_OF_SWEEP.get(key, Values) | None, None) for key in SWEPT},
+)
+
+
 class MuscleEntry(Entry):
-    """A muscle, or what of it differs from its ``base``."""
+    """A muscle, or what of it differs from its ``base``; or many, by a sweep or a table."""
 
     base: Name | None = None
     inner_diameter: Number | None = None
@@ -323,6 +349,8 @@ class MuscleEntry(Entry):
     ambient_pressure: Number | None = None
     material: Name | None = None
     reference: _some_of(*FORCE_MAPS) | None = None
+    sweep: SweepEntry | None = None
+    table: str | None = None  # path of a CSV file
 
 
 EffectsEntry = create_model(

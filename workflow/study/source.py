@@ -1,7 +1,7 @@
 """The text of a study file: what stands in it, and every refusal with its line."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -35,11 +35,15 @@ class Source:
     ----------
     plain : dicts, lists and scalars
     root : the same with line numbers
+    groups : names of the muscles of a sweep or table, by that of their entry
+    files : tables in which muscles stand, by the muscle's name
     """
 
     path: Path
     plain: Any
     root: Node
+    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def read(cls, path: Path) -> "Source":
@@ -98,7 +102,10 @@ class Source:
 
     def place(self, keys: Keys) -> str:
         """``file:line: key.path``; the line is that of the last key that is there."""
-        line, name = self.line(keys), printable(str(self.path))
+        line, file = self.line(keys), str(self.path)
+        if keys[0] == "muscles" and len(keys) > 1:
+            file = self.files.get(str(keys[1]), file)
+        name = printable(file)
         where = f"{name}:{line}" if line is not None else name
         return f"{where}: {'.'.join(_readable(key) for key in keys)}"
 
@@ -107,7 +114,8 @@ class Source:
         node, line = self.root, None
         for key in keys:
             if isinstance(node.value, dict):
-                own = next((k for k in node.value if k == key or str(k) == key), None)
+                alike = (k for k in node.value if str(k) == key)
+                own = key if key in node.value else next(alike, None)
                 if own not in node.value:
                     break
                 line, node = node.lines[own], node.value[own]

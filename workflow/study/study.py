@@ -23,7 +23,7 @@ from solver.memory import Memory
 from solver.numerics import KINDS, Numerics, Spread
 from solver.rubber import LAWS
 from solver.rubber.rubber_law import LEAST_KAPPA, RubberLaw
-from workflow.study import checks, fit, in_time, layers, units
+from workflow.study import checks, fit, in_time, layers, sweep, units
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices, shown
 from workflow.study.installation import Installation
@@ -87,7 +87,7 @@ def load(path: Path | str, findings: Findings | None = None) -> Study:
     """
     found = Findings() if findings is None else findings
     source = Source.read(Path(path))
-    file = source.validated(found)
+    source, file = sweep.spread(source, source.validated(found), found)
     rubbers: dict[str, RubberLaw] = {}
     limits: dict[str, Limits] = {}
     memories: dict[str, Memory] = {}
@@ -112,7 +112,7 @@ def load(path: Path | str, findings: Findings | None = None) -> Study:
     of_materials = rubbers, limits, weights
     resolved = _Muscles(source, found, file.muscles, *of_materials, spread.modulus)
     muscles: dict[str, StudiedMuscle] = {}
-    for name in file.muscles:
+    for name in [name for name in file.muscles if name not in source.groups]:
         with found.gathering():
             made = resolved.built(name)
             muscles[name] = replace(made, memory=memories.get(made.material))
@@ -463,6 +463,12 @@ class _Muscles:
     def _check_reference(self, key: str, other: str, chain: dict[str, None]) -> None:
         """Refuse what the last muscle of a chain names if it is not there, or in the chain."""
         *_, last = chain
+        group = self.source.groups.get(other)
+        if group is not None and last not in group:
+            if not group:
+                raise AlreadyRefused
+            allowed = f"one muscle; of {other} there are {choices(other, group)}"
+            raise self.source.refuse(("muscles", last, key), other, allowed)
         if other in self.entries and other not in self._lost and other not in chain:
             return
         known = self.source.names("muscles")
