@@ -37,10 +37,17 @@ Onwards = Callable[[Case, float], States | None]
 
 def check_state(case: Case, stop: int, row: dict[str, float]) -> None:
     """Raise ValueError if a row is no state of the curve at a stop (the last: of zero force)."""
-    path = case.path
+    path, history = case.path, case.path.history
     asked = {path.kind.held: path.held}
     if stop < len(path.stops):
         asked[path.kind.swept] = path.stops[stop]
+    if history is not None:
+        if history.held is not None:
+            asked[path.kind.held] = history.held[stop]
+        if history.mass and stop > 0:
+            del asked[Control.FORCE]  # what is left of the load moves the mass
+        if history.valve is not None and stop > 0:
+            del asked[Control.PRESSURE]  # of the supply
     modulus = case.rubber.load_scale
     sizes = {
         Control.CONTRACTION: 1.0,

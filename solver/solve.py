@@ -14,7 +14,7 @@ from geometry.braid import Kind, Layer, LayeredBraid
 from geometry.labels import Boundary
 from geometry.muscle import Muscle
 from geometry.seal import is_sealed, why_none
-from solver import continuity, files, freefem
+from solver import continuity, files, freefem, in_time
 from solver.case import Case
 from solver.continuity import Solved, States, check_state
 from solver.effects import Volume
@@ -91,7 +91,8 @@ class _Solver:
         names = variables(case.path)
         states, fields = solved = unreached(case.path.states, names), dict[int, States]()
         count, lost, searched = len(case.path.stops), set[int](), None
-        for way in case.path.ways():
+        timed = case.path.history is not None
+        for way in [in_time.way(case)] if timed else case.path.ways():
             end = self._add(case, way, solved, lost)
             searched = end.searched or searched
             if end.status is not None:
@@ -219,7 +220,10 @@ def _follow(
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as scratch:
         work = Path(scratch)
         (work / "composition.idp").write_text(composition(case))
-        (work / "waypoints.txt").write_text(waypoint_text(case, way, started=bool(start)))
+        if case.path.history is None:
+            (work / "waypoints.txt").write_text(waypoint_text(case, way, started=bool(start)))
+        else:
+            in_time.write(case, work)
         if start:
             (work / "start.txt").write_bytes(start)
         given = flags(case, mesh.resolve())
@@ -239,6 +243,8 @@ def _follow(
             unknowns = _number(work / "unknowns.txt")
             largest = LARGEST_FIELDS * mesh.stat().st_size
             _collect(case, way, work, largest, states, fields)
+            if case.path.history is not None:
+                in_time.add(states, _rows(work / "times.csv", len(way)))
             starts = _starts(case, way, work, largest)
             searched = _searched(work / "zero.txt")
         except RUBBISH as error:
@@ -265,7 +271,7 @@ def _run_until(
 
     def run() -> freefem.Usage:
         left = replace(limits, wall_time=max(until - time.monotonic(), 0))
-        return freefem.run(MODELS[case.model].program, given, work, log, left, includes(case))
+        return freefem.run(program(case), given, work, log, left, includes(case))
 
     try:
         return run()
@@ -303,11 +309,18 @@ def includes(case: Case) -> list[Path]:
     return [*MODELS[case.model].includes, *case.rubber.includes()]
 
 
+def program(case: Case) -> Path:
+    """The FreeFEM program of a case."""
+    own = MODELS[case.model].program
+    return own if case.path.history is None else own.with_name(f"{own.stem}_in_time.edp")
+
+
 def composition(case: Case) -> str:
     """The includes of a program: one per active effect."""
     threads = case.effects.threads if case.muscle.braid else "none"
     files = [f"threads_{threads}.idp", *MODELS[case.model].composition(case)]
-    return "".join(f'include "{name}"\n' for name in files)
+    remembers = "macro remembers() // EOM\n" if case.remembers else ""
+    return remembers + "".join(f'include "{name}"\n' for name in files)
 
 
 def waypoint_text(case: Case, way: list[Waypoint], *, started: bool = False) -> str:

@@ -53,6 +53,8 @@ MODEL = Model(
     fields={"meridian": slice(0, 4)},
     composition=composition,
     remarks=remarks,
+    in_time=True,
+    crumples=True,
     fuller="solid",
     lacks="cap_geometry",
 )
