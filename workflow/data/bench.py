@@ -165,10 +165,12 @@ def _check_force(table: Table, force: Array) -> None:
         )
 
 
-def _contraction(table: Table, place: str, values: Array, length: float, used: Array) -> Array:
+def _contraction(
+    table: Table, place: str, values: Array, length: float, used: NDArray[np.bool_]
+) -> Array:
     """Contractions of what stands in a file, if they are those of a muscle."""
     column = table.columns[place]
-    inside, name, unit = values[used.astype(bool)], column.name, column.header.unit
+    inside, name, unit = values[used], column.name, column.header.unit
     low, high = float(inside.min()), float(inside.max())
     if place == "contraction":
         if max(high, -low) > LARGEST_CONTRACTION:

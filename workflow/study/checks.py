@@ -49,8 +49,10 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
     if asked.path is not None and "path" in {key for key, _, _ in lacking}:
         return
     if asked.path is None:
-        unused = ("pressure", "contraction", "load", "models", "effects", "tolerance", "quantities")
-        unused += ("cycle", "transient")
+        unused = (
+            *("pressure", "contraction", "load", "models", "effects", "tolerance", "quantities"),
+            *("cycle", "transient"),
+        )
         for key in [key for key in unused if getattr(asked, key)][:1]:
             value = _as_written(getattr(asked, key))
             value = "a mapping" if key in ("cycle", "transient") else value

@@ -5,7 +5,7 @@ from typing import Any
 
 from geometry.refusal import Refusal, build
 from solver.history import MOST_STEPS, History, Start, Valve, Wave, sampled, through
-from solver.load_path import LoadPath
+from solver.load_path import LoadPath, PathKind
 from solver.memory import Memory
 from solver.refusal import UnsolvableCase
 from workflow.study.errors import StudyError
@@ -40,9 +40,10 @@ def paths(scene: Scene, held: float) -> dict[float, LoadPath]:
     UnsolvableCase
         If there can be no such path.
     """
+    kind = PathKind(scene.kind)
     if scene.cycle is not None:
         entry = scene.cycle
-        remembered = {"start": Start(entry.start), "preload": entry.preload}
+        remembered: dict[str, Any] = {"start": Start(entry.start), "preload": entry.preload}
         if entry.table is not None:
             period = entry.table[-1][0]
             count = entry.cycles * entry.samples
@@ -50,13 +51,13 @@ def paths(scene: Scene, held: float) -> dict[float, LoadPath]:
             once = through(entry.table, times[: entry.samples + 1])
             stops = once + once[1:] * (entry.cycles - 1)
             history = History(times=times, period=period, **remembered)
-            return {period: LoadPath(kind=scene.kind, held=held, stops=stops, history=history)}
+            return {period: LoadPath(kind=kind, held=held, stops=stops, history=history)}
         found = {}
         for period in entry.period or ():
             low, high = scene.swept
             times, stops = sampled(Wave(entry.wave), low, high, period, entry.cycles, entry.samples)
             history = History(times=times, period=period, **remembered)
-            found[period] = LoadPath(kind=scene.kind, held=held, stops=stops, history=history)
+            found[period] = LoadPath(kind=kind, held=held, stops=stops, history=history)
         return found
     assert scene.transient is not None
     given = scene.transient
@@ -77,7 +78,7 @@ def paths(scene: Scene, held: float) -> dict[float, LoadPath]:
         valve=valve,
     )
     stops = through(given.supply, times)
-    return {0.0: LoadPath(kind=scene.kind, held=held, stops=stops, history=history)}
+    return {0.0: LoadPath(kind=kind, held=held, stops=stops, history=history)}
 
 
 def check(source: Source, keys: Keys, scene: Scene) -> Iterator[StudyError]:
@@ -122,7 +123,8 @@ def check(source: Source, keys: Keys, scene: Scene) -> Iterator[StudyError]:
         try:
             paths(scene, value)
         except Refusal as refusal:
-            key = {"held": held, "stops": swept if waved else "table"}.get(refusal.field)
-            place = (*keys, key) if key in (held, swept) else (*keys, own, key or refusal.field)
+            named = {"held": held, "stops": swept if waved else "table"}
+            key = named.get(refusal.field, refusal.field)
+            place = (*keys, key) if key in (held, swept) else (*keys, own, key)
             yield source.refuse(place, refusal.value, refusal.allowed)
             return

@@ -8,7 +8,6 @@ the model of the fit, and by the
 solid, which shows whether that model was good enough.
 """
 
-import math
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -19,15 +18,16 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from geometry.muscle import Braid
+from solver.numerics import Spread
 from workflow.analyses.calibration.fit import Fitted, Parameter, fit
 from workflow.analyses.calibration.forward_model import ForwardModel
 from workflow.data import bench, deviation
 from workflow.data.reference import CONTRACTIONS, ForceMap
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
+from workflow.study.fit import stiffness
 from workflow.study.schema import CalibrationEntry
 
-THREAD_MODULUS = 2100.0  # MPa, section 2.2 of the paper
 CHECK = "solid"
 
 
@@ -186,4 +186,4 @@ def note(fitted: Fitted, muscle: StudiedMuscle) -> str:
 def thickest(braid: Braid) -> float:
     """EA of a thread as thick as the layers are apart, by the paper's modulus [N]."""
     gap = (braid.layer_diameters[1] - braid.layer_diameters[0]) / 2
-    return THREAD_MODULUS * math.pi * gap**2 / 4
+    return stiffness(Spread().modulus, gap)

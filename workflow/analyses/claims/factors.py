@@ -20,10 +20,11 @@ from workflow.analyses.claims.claim import (
     within,
 )
 from workflow.analyses.claims.contraction import lacking
+from workflow.data import paper
 
 SMALL_ANGLE = "dmsp20_a17.1"
 WIDE = {60: "dmsp20_d40", 120: "dmsp20_d40_n120"}  # by threads per layer
-RATIO, SURGE = 4.0, 34.5
+RATIO, SURGE = 4.0, paper.RATIO
 WALLS = {1.5: "dmsp20_t1.5", 2.0: "dmsp20", 2.5: "dmsp20_t2.5", 3.0: "dmsp20_t3"}  # mm
 SILICONE = {thickness: f"{name}_silicone" for thickness, name in WALLS.items()}
 BEST = 2.0  # mm, where the paper's silicone muscle pulls most

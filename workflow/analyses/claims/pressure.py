@@ -8,7 +8,7 @@ import pandas as pd
 from workflow.analyses.claims.claim import (
     GEOMETRIC,
     Array,
-    Claim,
+    Claims,
     Data,
     Finding,
     Missing,
@@ -20,16 +20,16 @@ from workflow.analyses.claims.claim import (
     values,
     within,
 )
+from workflow.data.paper import AT_CONTRACTION, EXCESS, THRESHOLD
 
-CONTRACTION = 0.1
-THRESHOLD = 0.15  # MPa, the paper's
 STABLE, HIGHEST = 0.2, 0.4  # MPa: from where on the diameter is stable, end of figure 7
-EXCESS = 0.156
 LOADS = (100.0, 200.0, 300.0)  # N
 PARTS = (0.0, 0.2, 0.4, 0.6)  # MPa: contraction is fastest in the middle part
 START = 0.1  # MPa: below, the loaded muscle extends
+CLAIMS = Claims()
 
 
+@CLAIMS.add("C3a", "fig06", "threshold pressure at 10 %", paper=f"{THRESHOLD:g}", unit="MPa")
 def threshold(data: Data) -> Finding:
     """C3a: the pressure of zero force."""
     found = _threshold(data)
@@ -38,6 +38,7 @@ def threshold(data: Data) -> Finding:
     return within(found, off, 0.1, 0.25, why)
 
 
+@CLAIMS.add("C3b", "fig06", "force is negative below the threshold", paper="negative", unit="N")
 def pushes_below(data: Data) -> Finding:
     """C3b: the sign of the force below the threshold."""
     force, limit = _isometric(data, "force"), _threshold(data)
@@ -48,6 +49,7 @@ def pushes_below(data: Data) -> Finding:
     return graded(float(below.min()), [bool((below < 0).all()), bool((below < 0).any())], why)
 
 
+@CLAIMS.add("C3c", "fig06", "force is nonlinear there", paper="nonlinear")
 def nonlinear_below(data: Data) -> Finding:
     """C3c: curvature below the threshold against that above."""
     force, limit = _isometric(data, "force"), _threshold(data)
@@ -62,6 +64,7 @@ def nonlinear_below(data: Data) -> Finding:
     return graded(ours, [ours > max(0.1, 2 * other)], why)
 
 
+@CLAIMS.add("C3d", "fig06", "Eq. (1) has no threshold", paper="positive", unit="N")
 def no_threshold_in_equation(data: Data) -> Finding:
     """C3d: the force of Eq. (1) at the lowest pressures."""
     force = _isometric(data, "force", model=GEOMETRIC)
@@ -70,6 +73,12 @@ def no_threshold_in_equation(data: Data) -> Finding:
     return graded(float(pulling.min()), [bool((pulling > 0).all())], why)
 
 
+@CLAIMS.add(
+    "C4a",
+    "fig07",
+    "the inner diameter rises sharply below 0.15 MPa and is nearly stable above 0.2",
+    paper="sharp",
+)
 def sharp_then_stable(data: Data) -> Finding:
     """C4a: slope of the inflated diameter below 0.15 against that above 0.2 MPa."""
     diameter = _isometric(data, "inner_diameter_inflated")
@@ -82,6 +91,9 @@ def sharp_then_stable(data: Data) -> Finding:
     return graded(low / high, [low > 3 * high, last / first < 1.1], why)
 
 
+@CLAIMS.add(
+    "C4b", "fig07", "the equivalent diameter rises faster than the inflated one", paper="> 1"
+)
 def equivalent_is_faster(data: Data) -> Finding:
     """C4b: slope of the equivalent diameter against that of the inflated one."""
     ours = slope(_isometric(data, "inner_diameter_inflated"), STABLE, HIGHEST)
@@ -90,6 +102,12 @@ def equivalent_is_faster(data: Data) -> Finding:
     return graded(other / ours, [other > ours], why)
 
 
+@CLAIMS.add(
+    "C4c",
+    "fig07",
+    "the equivalent diameter is larger by, on average above the threshold",
+    paper=f"{EXCESS:g}",
+)
 def mean_excess(data: Data) -> Finding:
     """C4c: by how much the equivalent exceeds the inflated diameter."""
     excess = _equivalent(data) / _isometric(data, "inner_diameter_inflated") - 1
@@ -106,6 +124,9 @@ def mean_excess(data: Data) -> Finding:
     return within(mean, off, 0.05, 0.15, why)
 
 
+@CLAIMS.add(
+    "C5a", "fig08", "under 100, 200, 300 N the muscle extends below", paper=f"{START:g}", unit="MPa"
+)
 def extends_at_first(data: Data) -> Finding:
     """C5a: the pressure at which the loaded muscle has its initial length again."""
     found = []
@@ -122,6 +143,7 @@ def extends_at_first(data: Data) -> Finding:
     return graded(float(np.mean(found)), [abs(p - START) <= 0.025 for p in found], why)
 
 
+@CLAIMS.add("C5b", "fig08", "contraction rises fastest between 0.2 and 0.4 MPa", paper="> 1")
 def fastest_in_the_middle(data: Data) -> Finding:
     """C5b: slopes of contraction against pressure below, within and above 0.2 to 0.4 MPa."""
     slopes = np.array(
@@ -138,6 +160,7 @@ def fastest_in_the_middle(data: Data) -> Finding:
     return graded(middle, parts, why)
 
 
+@CLAIMS.add("C5c", "fig08", "the gap between loads widens with pressure", paper="> 0")
 def gap_widens(data: Data) -> Finding:
     """C5c: gap between the lowest and the highest load along pressure."""
     gap = _contractions(data)
@@ -146,6 +169,7 @@ def gap_widens(data: Data) -> Finding:
     return graded(float(gap[-1] - gap[0]), list(np.diff(gap) > 0), why)
 
 
+@CLAIMS.add("C5d", "fig08", "the gap narrows with load", paper="< 1")
 def gap_narrows_with_load(data: Data) -> Finding:
     """C5d: gap between 100 and 200 N against that between 200 and 300 N."""
     gaps = -np.diff(_contractions(data), axis=0)
@@ -155,11 +179,11 @@ def gap_narrows_with_load(data: Data) -> Finding:
 
 
 def _isometric(data: Data, quantity: str, model: str | None = None) -> pd.Series:
-    return data.curve("isometric", quantity, CONTRACTION, model=model)
+    return data.curve("isometric", quantity, AT_CONTRACTION, model=model)
 
 
 def _threshold(data: Data) -> float:
-    return data.zero_force("isometric", CONTRACTION)
+    return data.zero_force("isometric", AT_CONTRACTION)
 
 
 def _equivalent(data: Data) -> pd.Series:
@@ -176,60 +200,3 @@ def _loaded(data: Data, load: float) -> pd.Series:
 def _contractions(data: Data) -> Array:
     """Shape (load, pressure)."""
     return np.array([values(_loaded(data, load), PARTS) for load in LOADS])
-
-
-CLAIMS = (
-    Claim("C3a", "fig06", "threshold pressure at 10 %", "MPa", f"{THRESHOLD:g}", threshold),
-    Claim("C3b", "fig06", "force is negative below the threshold", "N", "negative", pushes_below),
-    Claim("C3c", "fig06", "force is nonlinear there", "1", "nonlinear", nonlinear_below),
-    Claim(
-        "C3d",
-        "fig06",
-        "Eq. (1) has no threshold",
-        "N",
-        "positive",
-        no_threshold_in_equation,
-    ),
-    Claim(
-        "C4a",
-        "fig07",
-        "the inner diameter rises sharply below 0.15 MPa and is nearly stable above 0.2",
-        "1",
-        "sharp",
-        sharp_then_stable,
-    ),
-    Claim(
-        "C4b",
-        "fig07",
-        "the equivalent diameter rises faster than the inflated one",
-        "1",
-        "> 1",
-        equivalent_is_faster,
-    ),
-    Claim(
-        "C4c",
-        "fig07",
-        "the equivalent diameter is larger by, on average above the threshold",
-        "1",
-        f"{EXCESS:g}",
-        mean_excess,
-    ),
-    Claim(
-        "C5a",
-        "fig08",
-        "under 100, 200, 300 N the muscle extends below",
-        "MPa",
-        f"{START:g}",
-        extends_at_first,
-    ),
-    Claim(
-        "C5b",
-        "fig08",
-        "contraction rises fastest between 0.2 and 0.4 MPa",
-        "1",
-        "> 1",
-        fastest_in_the_middle,
-    ),
-    Claim("C5c", "fig08", "the gap between loads widens with pressure", "1", "> 0", gap_widens),
-    Claim("C5d", "fig08", "the gap narrows with load", "1", "< 1", gap_narrows_with_load),
-)

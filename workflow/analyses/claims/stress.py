@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from workflow.analyses.claims.claim import (
     MUSCLE,
     Array,
-    Claim,
+    Claims,
     Data,
     Finding,
     Missing,
@@ -30,6 +30,7 @@ SUMMARY = {
     "arc_mean": "smallest mean through the wall of the largest principal stress there",
     "compressed": "share of the wall within one diameter of the cap where it is negative",
 }
+CLAIMS = Claims()
 
 
 def summary(fields: Mapping[str, NDArray[np.float64]], diameter: float, length: float) -> Array:
@@ -56,6 +57,13 @@ def summary(fields: Mapping[str, NDArray[np.float64]], diameter: float, length: 
     )
 
 
+@CLAIMS.add(
+    "C2a",
+    "fig05",
+    "the principal stress is positive in the cylindrical part",
+    paper="positive",
+    unit="MPa",
+)
 def positive_cylinder(data: Data) -> Finding:
     """C2a: the cylindrical part is under tension."""
     found = _at_pressures(data, "cylinder")
@@ -63,6 +71,13 @@ def positive_cylinder(data: Data) -> Finding:
     return graded(float(found.min()), list(found > 0), why)
 
 
+@CLAIMS.add(
+    "C2b",
+    "fig05",
+    "the principal stress is negative in the arcs near the caps",
+    paper="negative",
+    unit="MPa",
+)
 def negative_arcs(data: Data) -> Finding:
     """C2b: the arcs at the caps are compressed, the whole wall or at least some of it."""
     found, mean = _at_pressures(data, "arc"), _at_pressures(data, "arc_mean")
@@ -76,6 +91,7 @@ def negative_arcs(data: Data) -> Finding:
     return graded(float(found.min()), [*(mean < 0), *(found < 0)], why)
 
 
+@CLAIMS.add("C2c", "fig05", "those areas grow with pressure", paper="grow")
 def growing_areas(data: Data) -> Finding:
     """C2c: the compressed areas grow with pressure."""
     found = _at_pressures(data, "compressed")
@@ -95,24 +111,3 @@ def _at_pressures(data: Data, quantity: str) -> Array:
     for _, curve in rows.groupby(["model", "variant"]):
         return values(curve.set_index("pressure")[quantity], PRESSURES)
     raise Missing("there is no stress of these states")
-
-
-CLAIMS = (
-    Claim(
-        "C2a",
-        "fig05",
-        "the principal stress is positive in the cylindrical part",
-        "MPa",
-        "positive",
-        positive_cylinder,
-    ),
-    Claim(
-        "C2b",
-        "fig05",
-        "the principal stress is negative in the arcs near the caps",
-        "MPa",
-        "negative",
-        negative_arcs,
-    ),
-    Claim("C2c", "fig05", "those areas grow with pressure", "1", "grow", growing_areas),
-)

@@ -20,9 +20,10 @@ from solver.case import Case
 from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
-from solver.numerics import Numerics
+from solver.numerics import Numerics, Spread
 from solver.rubber.rubber_law import RubberLaw
 from workflow.analyses.analysis import AnalysisCase
+from workflow.study import fit
 from workflow.study.contents import Study
 
 MUSCLE, SILICONE = "dmsp20", "dmsp20_silicone"  # of the study file
@@ -43,7 +44,6 @@ HYPERCUBE_MESH = SectionMesh(cap_step=0.25, growth=1.25, body_step=0.2)
 SEED = 20260101
 SAMPLES = 200
 REPEATED = 10  # every so many-th sample, on a finer mesh
-THREAD_MODULUS = 2100.0  # MPa: the diameter of a thread follows from its stiffness
 LIMITS = {  # of the hypercube: name -> (low, high, logarithmic)
     "inner_diameter": (8, 50, False),  # mm
     "wall": (0.04, 0.2, False),  # of the diameter
@@ -172,7 +172,7 @@ def _sample(point: np.ndarray) -> Case | None:
     layers = (diameter + 2 * LAYERS[0] * wall, diameter + 2 * LAYERS[1] * wall)
     threads = round(v["threads"])
     braid = Braid.from_angle(angle=v["angle"], threads=threads, layer_diameters=layers)
-    thread_diameter = math.sqrt(4 * v["stiffness"] / (THREAD_MODULUS * math.pi))
+    thread_diameter = fit.diameter(v["stiffness"], Spread().modulus)
     if math.pi * layers[0] * math.cos(braid.angle) / threads <= thread_diameter:
         return None
     muscle = Muscle(

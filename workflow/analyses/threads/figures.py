@@ -16,6 +16,7 @@ from workflow.analyses import undrawn
 from workflow.analyses.analysis import Solved
 from workflow.analyses.threads.local import nodes
 from workflow.figures import curves, style
+from workflow.study import fit
 
 Array = NDArray[np.float64]
 HEIGHT = 0.25  # of the cut, in axial spacings: the threads of both layers lie apart there
@@ -115,7 +116,7 @@ def _at(values: Any, box: Box, radius: Array, turn: Array) -> tuple[Array, Array
 
 def _outlines(case: Any, period: float) -> list[tuple[Array, Array]]:
     """Sections of the round threads in the cut, as radii and angles."""
-    size = np.sqrt(case.thread.stiffness / (np.pi * case.numerics.spread.modulus))
+    size = fit.diameter(case.thread.stiffness, case.numerics.spread.modulus) / 2
     turn = np.linspace(0, 2 * np.pi, 60)
     found = []
     for sense, level, angle in zip(

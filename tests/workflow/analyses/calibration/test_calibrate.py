@@ -7,7 +7,7 @@ import pytest
 
 from geometry.muscle import Braid
 from workflow.analyses.calibration import calibrate, files
-from workflow.analyses.calibration.calibrate import THREAD_MODULUS, thickest
+from workflow.analyses.calibration.calibrate import thickest
 from workflow.analyses.calibration.fit import Fitted, Parameter
 from workflow.analyses.calibration.forward_model import ForwardModel
 from workflow.data import bench
@@ -97,7 +97,7 @@ def test_rubber_is_fitted_too_and_the_entry_is_a_muscle(study, forces_of):
 
 def test_a_value_beyond_what_fits_between_the_layers_is_said(study):
     braid = Braid(lead=144, threads=60, layer_diameters=(20.6, 21.8))
-    assert thickest(braid) == pytest.approx(THREAD_MODULUS * np.pi * 0.6**2 / 4)
+    assert thickest(braid) == pytest.approx(2100 * np.pi * 0.6**2 / 4)
     assert round(thickest(braid)) == 594
     muscle = study(calibration="").muscles["one"]
     stiffness = Parameter("thread_stiffness", "N", 315, 10, 10000)
