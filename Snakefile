@@ -12,11 +12,10 @@ min_version("9.0")
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/run.smk"
-include: "workflow/rules/mesh.smk"
 include: "workflow/rules/solve.smk"
-include: "workflow/rules/gather.smk"
 include: "workflow/rules/figures.smk"
-include: "workflow/rules/fields.smk"
+include: "workflow/rules/gather.smk"
+include: "workflow/rules/muscles.smk"
 include: "workflow/rules/answers.smk"
 include: "workflow/rules/analyses.smk"
 include: "workflow/rules/benchmark.smk"
@@ -27,16 +26,14 @@ include: "workflow/rules/report.smk"
 rule all:
     default_target: not REPORTING
     input:
-        figures(),
-        map(record_of, PLAN.cases),  # else one that was deleted would not be missed
-        expand("results/muscles/{muscle}.step", muscle=PLAN.shown),
-        expand("results/fields/{file}", file=FIELD_FILES),
+        rules.figures.output,
+        [f"{RESULTS}/muscles/{muscle}.step" for muscle in PLAN.shown],
         sheets(),
-        "results/dataset.nc",
+        f"{RESULTS}/dataset.nc",
         deviations(),
-        "results/complete.txt",
+        f"{RESULTS}/complete.txt",
     message:
-        "All is there: results/figures, results/dataset.nc, results/muscles"
+        f"All is there: {RESULTS}/figures, {RESULTS}/dataset.nc, {RESULTS}/muscles"
 
 
 rule everything:

@@ -6,16 +6,13 @@ without a record, if it failed for a reason outside the case (a full disk, a sig
 """
 
 import argparse
-import json
 import sys
 import time
-from dataclasses import asdict, replace
 from pathlib import Path
 
-from geometry.files import atomic_write
 from geometry.refusal import Refusal
 from solver.case import Case
-from solver.freefem import Limits, Outside, Usage
+from solver.freefem import Limits
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -36,40 +33,21 @@ def main(arguments: list[str] | None = None) -> int:
     except (Refusal, KeyError, TypeError, ValueError) as error:
         print(f"no such case can be solved: {error}", file=sys.stderr)
         return 2
-    from solver import record  # numpy only once the case is known to make sense
-    from solver.solve import DamagedMesh, solve
+    from solver.job import Job, say  # numpy only once the case is known to make sense
 
-    limits = Limits(wall_time=given.wall_time, memory=given.memory)
-    try:
-        given.log.write_text("")
-        began = time.process_time()
-        solution, usage = solve(case, given.mesh, given.log, limits)
-        solving = time.process_time() - began
-        record.write(given.record, case, replace(solution, code=given.code))
-        _write_cost(given.cost, start, solving, solution.status, usage)
-    except DamagedMesh as error:
-        given.mesh.unlink(missing_ok=True)  # else it would be so for ever
-        print(f"not solved, to be tried again: {error}, and deleted", file=sys.stderr)
-        return 1
-    except (OSError, MemoryError, Outside) as error:
-        print(f"not solved, to be tried again: {error}", file=sys.stderr)
+    job = Job(
+        case=case,
+        mesh=given.mesh,
+        record=given.record,
+        cost=given.cost,
+        log=given.log,
+        limits=Limits(wall_time=given.wall_time, memory=given.memory),
+        code=given.code,
+    )
+    if why := job.run(start):
+        say(why)
         return 1
     return 0
-
-
-def _write_cost(path: Path, start: float, solving: float, status: str, usage: Usage | None) -> None:
-    cost = {
-        "total_seconds": time.monotonic() - start,
-        "python_cpu_seconds": time.process_time() - solving,  # from its start, with all imports
-        "solve_cpu_seconds": solving,  # of Python alone
-        "status": status,
-    }
-    if usage is not None:
-        values = asdict(usage)
-        values |= values.pop("parts")
-        cost |= {f"freefem_{name}": value for name, value in values.items()}
-    with atomic_write(path, sealed=False) as beside:
-        beside.write_text(json.dumps(cost, sort_keys=True) + "\n")
 
 
 if __name__ == "__main__":

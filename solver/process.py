@@ -4,12 +4,15 @@ import ctypes
 import os
 import signal
 import subprocess
+import sys
 import threading
+import traceback
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import IO, ClassVar
 
+INTERRUPTED = 128 + signal.SIGINT  # exit status, as a shell gives it
 LIBC = ctypes.CDLL(None)  # loaded before a child forks
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36  # linux/prctl.h
 
@@ -76,6 +79,35 @@ class Family:
                     with suppress(OSError):
                         os.kill(orphan, signal.SIGKILL)
                         os.waitpid(orphan, 0)
+
+
+def fork(task: Callable[[], int]) -> int:
+    """Do a task in a copy of this process, which ends with its status, or with this process.
+
+    Gives the number of the copy; whoever starts one waits for it. Ctrl-C reaches all processes of a
+    terminal, and this one ends its copies then, by SIGTERM.
+    """
+    parent = os.getpid()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    number = os.fork()
+    if number:
+        return number
+    status = 1
+    try:
+        LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+        if os.getppid() == parent:  # else it has ended before it was asked for
+            status = task()
+    except KeyboardInterrupt:
+        status = INTERRUPTED
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
 
 
 def _children() -> set[int]:

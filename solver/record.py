@@ -39,7 +39,7 @@ from numpy.typing import NDArray
 
 from geometry.files import atomic_write
 from solver import sources
-from solver.case import Case, digest
+from solver.case import Case
 from solver.declared import Declared
 from solver.load_path import LoadPath
 from solver.status import CaseStatus, Flag, StateStatus
@@ -194,6 +194,18 @@ def read(path: Path) -> tuple[Case, Solution]:
         raise NoRecord(f"{path}: no readable record ({error})") from error
 
 
+def code_of(path: Path) -> str:
+    """Digest of the sources that solved a record that is there; raises NoRecord as ``read``."""
+    import h5py
+
+    try:
+        _check_seal(path)
+        with h5py.File(path) as file:
+            return str(file.attrs["code"])
+    except (OSError, KeyError, RuntimeError, ValueError) as error:
+        raise NoRecord(f"{path}: no readable record ({error})") from error
+
+
 def sealed(content: bytes) -> bytes:
     """The content of a record with its checksum in the first bytes."""
     return _head(content[BLOCK:]) + content[BLOCK:]
@@ -271,7 +283,7 @@ def _read_fields(file: Any, declared: Declared) -> dict[int, dict[str, NDArray[n
 def code_digest(*models: str, law: str = "") -> str:
     """Digest of the sources that decide the results of some models with a law of rubber."""
     files = sorted({file for model in models for file in sources.of_solve(model, law)})
-    return digest("".join(f"{file}\n{(sources.ROOT / file).read_text()}" for file in files))
+    return sources.digest(tuple(files))
 
 
 def _write_parameters(group: Any, case: Case) -> None:

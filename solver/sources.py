@@ -11,6 +11,7 @@ names: whoever asks names that module as well; ``of_mesh`` and ``of_solve`` do.
 """
 
 import ast
+import hashlib
 from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
@@ -63,6 +64,13 @@ def of_solve(model: str, law: str = "") -> tuple[str, ...]:
         programs = (p for folder in folders for p in folder.glob("*.[ei]dp"))
         files.update(path.relative_to(ROOT).as_posix() for path in programs)
     return tuple(sorted(files))
+
+
+@cache
+def digest(files: tuple[str, ...]) -> str:
+    """Digest of names and contents of files of the checkout."""
+    text = "".join(f"{file}\n{(ROOT / file).read_text()}" for file in files)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def closure(modules: Iterable[str]) -> set[str]:

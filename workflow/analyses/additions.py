@@ -6,7 +6,6 @@ own to a dataset, and to failures, that are there. Both give the same bytes. Wha
 old as the last run of the analysis: after a change of the study file ask for it again.
 """
 
-import fcntl
 import os
 import re
 from collections.abc import Iterable, Iterator
@@ -18,18 +17,16 @@ import xarray as xr
 
 from workflow.analyses import analysis
 from workflow.data import dataset
-from workflow.run import failures
-
-TABLES = Path("results/tables")
+from workflow.run import failures, lock
 
 
-def failed(tables: Path = TABLES) -> list[Path]:
+def failed(tables: Path) -> list[Path]:
     """The tables of failed cases that are there."""
     files = [tables / analysis.failures_of(name) for name in analysis.names()]
     return [file for file in files if file.exists()]
 
 
-def found(names: Iterable[str], tables: Path = TABLES) -> dict[str, xr.Dataset]:
+def found(names: Iterable[str], tables: Path) -> dict[str, xr.Dataset]:
     """The groups of those analyses whose tables are there, by name."""
     files = {name: tables / f"{name}.csv" for name in names}
     return {name: group(pd.read_csv(file)) for name, file in files.items() if file.exists()}
@@ -53,11 +50,12 @@ def group(table: pd.DataFrame) -> xr.Dataset:
     return data
 
 
-def add(name: str, table: Path, to: Path) -> None:
-    """Add the table of an analysis to a dataset, if that is there."""
+def add(name: str, results: Path) -> None:
+    """Add the table of an analysis to the dataset of a study, if that is there."""
+    table, to = results / "tables" / f"{name}.csv", results / dataset.FILE
     if not to.exists():
         return
-    with alone(to), same_time(to):
+    with alone(results), same_time(to):
         with xr.open_datatree(to, engine="h5netcdf") as tree:
             whole = tree.load()
         groups = {
@@ -67,12 +65,13 @@ def add(name: str, table: Path, to: Path) -> None:
         dataset.write(xr.DataTree.from_dict(dict(sorted(groups.items()))), to)
 
 
-def add_failures(to: Path, tables: Path) -> None:
+def add_failures(results: Path) -> None:
     """Add the failed cases of all analyses to a table of those of the scenes, if that is there."""
+    to = results / failures.TABLE
     if not to.exists():
         return
-    with alone(to), same_time(to):
-        failures.add(to, failed(tables))
+    with alone(to.parent), same_time(to):
+        failures.add(to, failed(to.parent))
 
 
 @contextmanager
@@ -85,11 +84,11 @@ def same_time(path: Path) -> Iterator[None]:
 
 @contextmanager
 def alone(path: Path) -> Iterator[None]:
-    """Wait until no other process writes to the folder of a file in such a block."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    folder = os.open(path.parent, os.O_RDONLY)
+    """Wait until no other process writes to a folder in such a block."""
+    path.mkdir(parents=True, exist_ok=True)
+    folder = os.open(path, os.O_RDONLY)
     try:
-        fcntl.flock(folder, fcntl.LOCK_EX)
+        lock.wait(folder)
         yield
     finally:
         os.close(folder)  # and the lock with it

@@ -10,10 +10,10 @@ from workflow.run import failures
 from workflow.study.study import load
 
 
-def evaluate(name: str, study_file: str, table: Path, figures: Path, files: Path) -> None:
+def evaluate(name: str, study_file: str, results: Path) -> None:
     """Read the records of an analysis; write all that it makes, each file whole or not at all.
 
-    Its own table is written as ``table``, others beside it.
+    ``results`` is the folder of the study: tables, figures and other files have theirs in it.
 
     Raises
     ------
@@ -28,16 +28,15 @@ def evaluate(name: str, study_file: str, table: Path, figures: Path, files: Path
     if asked.solves_cases:
         labels = {each.asked.case.key: each.asked.label for each in solved}
         solutions = {each.asked.case.key: each.solution for each in solved}
-        failures.write_analysis(name, labels, solutions, table.with_name(asked.failures))
+        failures.write_analysis(name, labels, solutions, results / "tables" / asked.failures)
     study = load(study_file)
     tables = asked.tabulated(study, solved)
     for stem, rows in tables.items():
-        path = table if stem == name else table.with_name(f"{stem}.csv")
-        with atomic_write(path) as beside:
+        with atomic_write(results / "tables" / f"{stem}.csv") as beside:
             rows.to_csv(beside, index=False, float_format=asked.tables[stem])
     for stem, text in asked.texts(study, tables).items():
-        with atomic_write(files / stem) as beside:
+        with atomic_write(results / name / stem) as beside:
             beside.write_text(text, encoding="utf-8")
     for stem, drawing in asked.drawn(solved, tables).items():
         for suffix in (".svg", ".png"):
-            style.save(drawing, (figures / stem).with_suffix(suffix))
+            style.save(drawing, results / "figures" / f"{stem}{suffix}")

@@ -38,6 +38,7 @@ from workflow.data.states import CONTROLS, OF_CURVE, OF_MUSCLE, OF_STATE, Table,
 from workflow.plan.effect_costs import group as measured_effects
 from workflow.study.contents import StudiedMuscle
 
+FILE = "dataset.nc"  # in the folder of a study
 LAYOUT = 3
 FILLED, LARGE = 0.05, 50e6  # share, bytes: what labelled groups must have, or not exceed
 INDEX = ("1", "row of the curve in /curves")

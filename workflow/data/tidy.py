@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 from geometry.files import atomic_write
 from workflow.data.states import OF_CURVE, OF_MUSCLE, OF_STATE, Table, attributes
 
+FILE = "states.parquet"  # in the folder of a study
 COLUMNS = OF_CURVE | OF_MUSCLE | OF_STATE
 COUNTS = ("state",)  # whole numbers that are there in every row
 

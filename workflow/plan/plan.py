@@ -101,6 +101,10 @@ class Plan:
     scenes: dict[str, dict[Place, str]]
     shown: dict[str, str]
 
+    def cases_of(self, scene: str) -> dict[str, PlannedCase]:
+        """The cases of a scene by key."""
+        return {key: self.cases[key] for key in sorted({*self.scenes.get(scene, {}).values()})}
+
     def digest(self, scene: str | None = None) -> str:
         """Digest of all that a scene (None: the dataset) takes from the study but its cases."""
         names = self.scenes if scene is None else [scene]

@@ -9,16 +9,18 @@ import argparse
 from pathlib import Path
 
 from workflow.plan.plan import Plan, read
-
-STUDY = Path("config/config.yaml")
-DATASET = Path("results/dataset.nc")
-STATES = Path("results/states.parquet")
-FAILURES = Path("results/tables/failures.csv")
+from workflow.study.folders import DEFAULT, check_owner, of_study
 
 
 def add_study(parser: argparse.ArgumentParser) -> None:
     """The option that names the study file."""
-    parser.add_argument("--study", type=Path, default=STUDY, help=f"file, by default {STUDY}")
+    parser.add_argument("--study", type=Path, default=DEFAULT, help=f"file, by default {DEFAULT}")
+
+
+def results_of(given: argparse.Namespace) -> Path:
+    """The folder of the results of the study file that was given."""
+    check_owner(given.study)
+    return of_study(given.study)
 
 
 def plan_of(given: argparse.Namespace) -> Plan:

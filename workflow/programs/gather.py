@@ -1,46 +1,46 @@
 """Write the dataset and the tables of states, failures and deviations."""
 
 import argparse
-from pathlib import Path
 
 from geometry.files import atomic_write
 from workflow.analyses import additions
 from workflow.analyses.registry import ANALYSES
 from workflow.data import dataset, deviation, records, reference, strain, tidy
 from workflow.data.states import Table
-from workflow.programs import DATASET, FAILURES, STATES, add_study, plan_of
+from workflow.programs import add_study, plan_of, results_of
 from workflow.run import failures
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What it is told."""
     add_study(parser)
-    parser.add_argument("--dataset", type=Path, default=DATASET)
-    parser.add_argument("--states", type=Path, default=STATES)
-    parser.add_argument("--failures", type=Path, default=FAILURES)
-    parser.add_argument("--deviation", type=Path, help="table of deviations from the force maps")
+    parser.add_argument(
+        "--deviation", action="store_true", help="a table of deviations from the force maps as well"
+    )
 
 
 def run(given: argparse.Namespace) -> int:
     """Read all records of the study and write what is made of all."""
     plan = plan_of(given)
     curves = records.curves_of_study(plan)
-    tables = given.failures.parent
+    results = results_of(given)
+    tables = results / "tables"
     muscles, study = plan.study.muscles, given.study.name
-    with additions.alone(given.dataset):
+    with additions.alone(results):
         groups = [name for name, each in ANALYSES.items() if each.in_dataset]
         others = additions.found(groups, tables)
         tree = dataset.build(curves, muscles, study=study, effects=True, others=others)
-        dataset.write(tree, given.dataset)
+        dataset.write(tree, results / dataset.FILE)
     table = Table.of(curves, muscles)
-    tidy.write(table, given.states)
+    tidy.write(table, results / tidy.FILE)
     solved = {curve.key: curve.solution for curve in curves}
-    with additions.alone(given.failures):
+    with additions.alone(tables):
         strained = strain.summary(curves)
-        failures.write(plan, solved, given.failures, strained, additions.failed(tables))
+        failed = additions.failed(tables)
+        failures.write(plan, solved, results / failures.TABLE, strained, failed)
     if given.deviation:
         named = {name: muscle.reference for name, muscle in plan.study.muscles.items()}
         rows = deviation.table(table, reference.of_muscles(named))
-        with atomic_write(given.deviation) as beside:
+        with atomic_write(tables / "deviation.csv") as beside:
             rows.to_csv(beside, index=False, float_format="%.6g")
     return 0

@@ -2,18 +2,15 @@
 
 import argparse
 import shutil
-from pathlib import Path
 
-from geometry.files import SEALS
+from geometry.files import RESULTS, SEALS
 from solver.status import CaseStatus
 from workflow.data import dataset, records, tidy
 from workflow.data.states import Table
 from workflow.figures import figure
-from workflow.programs import add_study, plan_of
+from workflow.programs import add_study, plan_of, results_of
 from workflow.run import failures
 from workflow.study import figure_needs
-
-FOLDER = Path("results/partial")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,24 +20,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Write them; cases without a record are not_solved. Status 1 if a figure cannot be drawn."""
-    plan = plan_of(given)
+    plan, folder = plan_of(given), results_of(given) / "partial"
     curves = records.curves_of_study(plan, partial=True)
     solutions = {curve.key: curve.solution for curve in curves}
     missing = sum(found.status is CaseStatus.NOT_SOLVED for found in solutions.values())
     muscles, study = plan.study.muscles, given.study.name
     tree = dataset.build(curves, muscles, study=study, effects=True)
-    dataset.write(tree, FOLDER / "dataset.nc")
-    tidy.write(Table.of(curves, muscles), FOLDER / "states.parquet")
-    failures.write(plan, solutions, FOLDER / "tables/failures.csv")
+    dataset.write(tree, folder / "dataset.nc")
+    tidy.write(Table.of(curves, muscles), folder / "states.parquet")
+    failures.write(plan, solutions, folder / failures.TABLE)
     print(f"{len(solutions) - missing} of {len(solutions)} cases are solved", flush=True)
     drawn, status = 0, 0
     for scene in filter(figure_needs.drawn, plan.study.scenes):
         try:
-            figure.make(plan, scene, FOLDER / f"figures/{scene}.png", partial=True)
+            figure.make(plan, scene, folder / f"figures/{scene}.png", partial=True)
             drawn += 1
         except Exception as error:  # a figure may need what is not there yet; the others do not
             print(f"{scene} cannot be drawn yet: {type(error).__name__}: {error}")
             status = 1
-    shutil.rmtree(SEALS / FOLDER.name, ignore_errors=True)  # written as often as wanted
-    print(f"{FOLDER}: dataset.nc, states.parquet, tables/failures.csv and {drawn} figures")
+    seals = SEALS / folder.relative_to(RESULTS)  # of what is written as often as wanted
+    shutil.rmtree(seals, ignore_errors=True)
+    print(f"{folder}: dataset.nc, states.parquet, tables/failures.csv and {drawn} figures")
     return status

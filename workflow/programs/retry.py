@@ -1,10 +1,10 @@
 """Delete the records of failed cases, so that they are solved again."""
 
 import argparse
-from pathlib import Path
 
 from workflow.data import records
 from workflow.programs.case_options import add_cases, cases_of
+from workflow.study.folders import MESHES
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,6 +19,6 @@ def run(given: argparse.Namespace) -> int:
         if status not in ("converged", "limit_point", "not solved"):
             records.path_of(key).unlink()
             if status == "mesh_failed" and case.mesh:
-                Path("results/meshes", case.mesh).unlink(missing_ok=True)
+                (MESHES / case.mesh).unlink(missing_ok=True)
             print(f"will be solved again (was {status}): {case.label}")
     return 0

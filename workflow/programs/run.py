@@ -5,8 +5,9 @@ import os
 import sys
 from pathlib import Path
 
-from workflow.programs import STUDY, add_study
+from workflow.programs import add_study
 from workflow.study.errors import StudyError
+from workflow.study.folders import DEFAULT
 
 CHECKOUT = Path(__file__).parents[2]
 
@@ -32,6 +33,6 @@ def command(given: argparse.Namespace) -> list[str]:
     words = [snakemake, "--snakefile", str(CHECKOUT / "Snakefile"), "--cores", given.cores]
     words += ["--profile", str(CHECKOUT / "profiles" / "default")]
     words += ["--dry-run"] * given.dry_run
-    if given.study != STUDY:
+    if given.study != DEFAULT:
         words += ["--config", f"study={given.study}"]
     return [*words, "--", *given.targets]

@@ -15,30 +15,32 @@ for each in ANALYSES.values():
         name:
             each.target or each.name
         input:
-            records=lambda wildcards, name=each.name: map(record_of, cases_of_analysis(name)),
+            solved=lambda wildcards, name=each.name: solved(f"analysis-{name}"),
             files=each.inputs(PLAN.study),
-            sources=lambda wildcards, modules=each.modules: sources(
-                "workflow.programs.analysis", *modules
-            ),
             # Added to, not read. Not ancient(): with that Snakemake (9.27) leaves the analysis out of
             # a run in which the dataset is gathered again, even where its outputs are missing.
-            dataset="results/dataset.nc" if each.in_dataset else [],
+            dataset=f"{RESULTS}/dataset.nc" if each.in_dataset else [],
         output:
-            table=f"results/tables/{each.name}.csv",
-            others=[f"results/tables/{table}.csv" for table in each.tables if table != each.name],
-            failures=[f"results/tables/{each.failures}"] if each.solves_cases else [],
-            files=[f"results/{each.name}/{file}" for file in each.files(PLAN.study)],
+            tables=expand("{folder}/tables/{table}.csv", folder=RESULTS, table=each.tables),
+            failures=[f"{RESULTS}/tables/{each.failures}"] if each.solves_cases else [],
+            files=[f"{RESULTS}/{each.name}/{file}" for file in each.files(PLAN.study)],
             figures=expand(
-                "results/figures/{figure}.{kind}", figure=each.figures, kind=["png", "svg"]
+                "{folder}/figures/{figure}.{kind}",
+                folder=RESULTS,
+                figure=each.figures,
+                kind=["png", "svg"],
             ),
         log:
-            f"results/logs/analyses/{each.name}.log",
+            f"{RESULTS}/logs/analyses/{each.name}.log",
         params:
             study=lambda _: STUDY,  # as it is, braces and all
             name=each.name,
             asked=lambda wildcards, name=each.name: ANALYSES[name].digest(PLAN.study),
+            code=lambda wildcards, modules=each.modules: code(
+                "workflow.programs.analysis", *modules
+            ),
         message:
             f"Evaluating the analysis {each.name}"
         shell:
             "python -m workflow analysis --study {params.study:q} --name {params.name:q}"
-            " --table {output.table:q} > {log:q} 2>&1"
+            " > {log:q} 2>&1"

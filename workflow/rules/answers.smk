@@ -1,6 +1,6 @@
 # Records of a scene -> the data sheets of its muscles, of scenes with quantities: [sheet].
 #
-#   in   the records that the scene asks for; what its muscles are built into; the reference maps
+#   in   the records of the study; what its muscles are built into; the reference maps
 #   out  results/sheets/<scene>.html, .png, .svg, .csv and .json
 from workflow.study.schema import SHEET
 
@@ -12,22 +12,20 @@ wildcard_constraints:
 def sheets():
     """Pages of all scenes that ask for sheets."""
     asking = [name for name, asked in PLAN.study.scenes.items() if SHEET in asked.quantities]
-    return [f"results/sheets/{scene}.html" for scene in asking]
+    return [f"{RESULTS}/sheets/{scene}.html" for scene in asking]
 
 
 rule sheet:
     input:
-        records=lambda wildcards: map(
-            record_of, sorted(set(PLAN.scenes.get(wildcards.scene, {}).values()))
-        ),
-        sources=lambda _: sources("workflow.programs.sheets"),
+        solved("study"),
     output:
-        multiext("results/sheets/{scene}", ".html", ".png", ".svg", ".csv", ".json"),
+        multiext(f"{RESULTS}/sheets/{{scene}}", ".html", ".png", ".svg", ".csv", ".json"),
     log:
-        "results/logs/sheets/{scene}.log",
+        f"{RESULTS}/logs/sheets/{{scene}}.log",
     params:
         study=lambda _: STUDY,  # as it is, braces and all
         scene=lambda wildcards: PLAN.digest(wildcards.scene),
+        code=lambda _: code("workflow.programs.sheets"),
     message:
         "Writing the sheets of {wildcards.scene}"
     shell:

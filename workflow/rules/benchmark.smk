@@ -10,9 +10,9 @@
 
 rule benchmark:
     input:
-        "results/tables/accuracy.csv",
+        f"{RESULTS}/tables/accuracy.csv",
     log:
-        "results/logs/benchmark.log",
+        f"{RESULTS}/logs/benchmark.log",
     # Nothing else runs beside it. Asked late, since --report names no cores.
     threads: lambda _: workflow.cores
     params:
@@ -21,4 +21,4 @@ rule benchmark:
         "Measuring what accuracy costs"
     shell:
         "python -m workflow benchmark --study {params.study:q} 2> >(tee {log:q} >&2)"
-        " && python -m workflow analysis --study {params.study:q} --name accuracy --table {input:q}"
+        " && python -m workflow analysis --study {params.study:q} --name accuracy"

@@ -1,26 +1,59 @@
-# Records of a scene -> its figure.
+# Records -> the figures of the scenes, and fields for ParaView of the states at which a scene asks for
+# stress or the deformed shape: all in one process, each if something that it is made of has changed
+# (workflow/figures/update.py). One that fails leaves the others as they are, so these files are not
+# Snakemake's, which would delete them all.
 #
-#   in   the records that the scene asks for; workflow/figures/<scene>.py and what all figures share
+#   in   the records; workflow/figures/<scene>.py and what all figures share
 #   out  results/figures/<scene>.png, .svg and .csv, the plotted numbers
+#        results/fields/<muscle>_<model>_<variant>_<path>_<held>_<stop>.vtu
+#        results/drawn.txt
+#
+# By its name one of them is made alone, of its own cases: snakemake results/figures/fig04.png
+
+
+rule figures:
+    input:
+        solved("study"),
+    output:
+        f"{RESULTS}/drawn.txt",
+    log:
+        f"{RESULTS}/logs/figures.log",
+    params:
+        study=lambda _: STUDY,  # as it is, braces and all
+        wanted=lambda _: update.wanted(PLAN),
+    message:
+        "Drawing {FIGURES:all}"
+    shell:
+        "python -m workflow draw --study {params.study:q} --stamp {output:q} 2> {log:q}"
 
 
 rule figure:
     input:
-        records=records_of_scene,
-        sources=lambda wildcards: sources(
-            "workflow.programs.figure", f"workflow.figures.{wildcards.figure}"
-        ),
+        lambda wildcards: solved(f"scene-{wildcards.figure}"),
     output:
-        png="results/figures/{figure}.png",
-        svg="results/figures/{figure}.svg",
-        csv="results/figures/{figure}.csv",
+        multiext(f"{RESULTS}/figures/{{figure}}", ".png", ".svg", ".csv"),
     log:
-        "results/logs/figures/{figure}.log",
+        f"{RESULTS}/logs/figures/{{figure}}.log",
     params:
         study=lambda _: STUDY,  # as it is, braces and all
-        scene=lambda wildcards: PLAN.digest(wildcards.figure),
+        wanted=lambda _: update.wanted(PLAN),
     message:
         "Drawing {wildcards.figure}"
     shell:
-        "python -m workflow figure --study {params.study:q} --scene {wildcards.figure:q}"
-        " --output {output.png:q} > {log:q} 2>&1"
+        "python -m workflow draw --study {params.study:q} --scene {wildcards.figure:q} 2> {log:q}"
+
+
+class Figures:
+    """Those that will be drawn, in a message."""
+
+    def __format__(self, _):
+        found = [scene for scene in DRAWN if will_be_drawn(scene)]
+        return ", ".join(found) or "nothing: all figures are there"
+
+
+def will_be_drawn(scene):
+    cases = PLAN.cases_of(scene)
+    return update.why_drawn(PLAN, scene, RESULTS) or batches.to_solve(cases)
+
+
+FIGURES = Figures()

@@ -10,51 +10,51 @@
 
 rule gather:
     input:
-        records=[record_of(case) for case in PLAN.cases],
-        sources=sources("workflow.programs.gather"),
+        solved("study"),
     output:
-        dataset="results/dataset.nc",
-        states="results/states.parquet",
-        failures="results/tables/failures.csv",
+        dataset=f"{RESULTS}/dataset.nc",
+        states=f"{RESULTS}/states.parquet",
+        failures=f"{RESULTS}/tables/failures.csv",
         deviation=deviations(),
     log:
-        "results/logs/gather.log",
+        f"{RESULTS}/logs/gather.log",
     priority: 1
     params:
         study=lambda _: STUDY,  # as it is, braces and all
         plan=PLAN.digest(),
-        deviation=["--deviation", *deviations()] if deviations() else [],
+        code=lambda _: code("workflow.programs.gather"),
+        deviation=["--deviation"] if deviations() else [],
     message:
         "Gathering the records of all cases"
     shell:
-        "python -m workflow gather --study {params.study:q}"
-        " --dataset {output.dataset:q} --states {output.states:q} --failures {output.failures:q}"
-        " {params.deviation:q} 2> {log:q}"
+        "python -m workflow gather --study {params.study:q} {params.deviation:q} 2> {log:q}"
 
 
 # What has been solved so far, of an unfinished study: snakemake --cores 1 partial
 rule partial:
     log:
-        "results/logs/partial.log",
+        f"{RESULTS}/logs/partial.log",
     params:
         study=lambda _: STUDY,  # as it is, braces and all
     message:
-        "Gathering and drawing what is solved, into results/partial"
+        f"Gathering and drawing what is solved, into {RESULTS}/partial"
     shell:
         "python -m workflow partial --study {params.study:q} 2>&1 | tee {log:q} >&2"
 
 
 rule complete:
     input:
-        figures=figures(),
-        dataset="results/dataset.nc",
-        failures="results/tables/failures.csv",
-        sources=sources("workflow.programs.failures"),
+        figures=rules.figures.output,
+        dataset=f"{RESULTS}/dataset.nc",
+        failures=f"{RESULTS}/tables/failures.csv",
     output:
-        touch("results/complete.txt"),
+        touch(f"{RESULTS}/complete.txt"),
     log:
-        "results/logs/complete.log",
+        f"{RESULTS}/logs/complete.log",
+    params:
+        study=lambda _: STUDY,  # as it is, braces and all
+        code=lambda _: code("workflow.programs.failures"),
     message:
         "Checking that no case failed"
     shell:
-        "python -m workflow failures --table {input.failures:q} 2> {log:q}"
+        "python -m workflow failures --study {params.study:q} 2> {log:q}"

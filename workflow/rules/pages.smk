@@ -9,16 +9,16 @@ def page_sources():
     """Chapter, title, caption, pictures and tables of every page there may be, by name."""
     pages = {}
     fitting = [each for each in ANALYSES.values() if each.fits(PLAN.study)]
-    judged = [f"results/tables/{each.name}.csv" for each in fitting if each.on_figures]
-    for scene in filter(drawn, PLAN.study.scenes):
+    judged = [f"{RESULTS}/tables/{each.name}.csv" for each in fitting if each.on_figures]
+    for scene in DRAWN:
         title = re.sub("^fig0?", "Figure ", scene)
-        pages[scene] = PAPER, title, caption_of(scene), [f"results/figures/{scene}.png"], judged
-    for table in map(Path, [*deviations(), "results/tables/failures.csv"]):
+        pages[scene] = PAPER, title, caption_of(scene), [f"{RESULTS}/figures/{scene}.png"], judged
+    for table in map(Path, [*deviations(), f"{RESULTS}/tables/failures.csv"]):
         name = table.stem
         pages[name] = CHAPTERS[name], name.capitalize(), caption_of(name), [], [str(table)]
     for each in fitting:
-        pictures = expand("results/figures/{picture}.png", picture=each.figures)
-        tables = expand("results/tables/{table}.csv", table=each.page)
+        pictures = [f"{RESULTS}/figures/{picture}.png" for picture in each.figures]
+        tables = [f"{RESULTS}/tables/{table}.csv" for table in each.page]
         pages[each.name] = each.chapter, each.title, each.caption, pictures, tables
     return pages
 
@@ -28,7 +28,7 @@ def added_to(page):
     if page != "failures":
         return []
     fitting = [each for each in ANALYSES.values() if each.fits(PLAN.study) and each.solves_cases]
-    return [f"results/tables/{each.failures}" for each in fitting]
+    return [f"{RESULTS}/tables/{each.failures}" for each in fitting]
 
 
 def caption_of(page):
@@ -42,7 +42,7 @@ PAGES = page_sources()
 
 def pages():
     """All pages; of a report those that are there."""
-    files = [f"results/report/{page}.html" for page in PAGES]
+    files = [f"{RESULTS}/report/{page}.html" for page in PAGES]
     if not REPORTING:
         return files
     found = [file for file in files if Path(file).exists()]

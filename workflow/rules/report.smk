@@ -18,25 +18,28 @@ for page_name, parts in PAGES.items():
         name:
             f"page_{re.sub('[^A-Za-z0-9]', '_', page_name)}"
         input:
-            pictures=page_pictures,
+            # those of scenes are not Snakemake's own (figures.smk)
+            pictures=rules.figures.output if page_name in DRAWN else page_pictures,
             tables=page_tables,
             additions=added_to(page_name),
-            caption=os.path.relpath(page_caption),
-            sources=lambda _: sources("workflow.programs.page"),
         output:
             report(
-                f"results/report/{page_name}.html",
+                f"{RESULTS}/report/{page_name}.html",
                 caption=os.path.relpath(page_caption, Path(CHECKOUT, "workflow/rules")),
                 category=page_chapter,
                 labels={"page": page_title},
             ),
         log:
-            f"results/logs/report/{page_name}.log",
+            f"{RESULTS}/logs/report/{page_name}.log",
         params:
             title=page_title,
+            caption=os.path.relpath(page_caption),
+            pictures=page_pictures,
+            text=page_caption.read_text(),
+            code=lambda _: code("workflow.programs.page"),
         message:
             f"Writing the page {page_name}"
         shell:
-            "python -m workflow page --title {params.title:q} --caption {input.caption:q}"
-            " --pictures {input.pictures:q} --tables {input.tables:q} --output {output:q}"
+            "python -m workflow page --title {params.title:q} --caption {params.caption:q}"
+            " --pictures {params.pictures:q} --tables {input.tables:q} --output {output:q}"
             " > {log:q} 2>&1"

@@ -14,21 +14,22 @@ PROGRESS = []  # of the run that goes on
 
 
 def solves(jobs):
-    """Cases that jobs solve, by key."""
-    return {
-        job.wildcards.case: case_of(job.wildcards.case) for job in jobs if job.rule.name == "solve"
-    }
+    """Cases of the batches among some jobs, by key."""
+    found = {}
+    for job in jobs:
+        if job.rule.name == "solve":
+            found.update(cases_of_batch(job.wildcards))
+    return found
 
 
 def follow():
     """Show how the run goes instead of what Snakemake says of every job."""
     quiet = {Quietness.ALL, Quietness.PROGRESS}.intersection(workflow.output_settings.quiet or ())
-    cases = {key: asked.case.model for key, asked in solves(workflow.dag.jobs).items()}
     progress = Progress(
-        cases,
-        solves(workflow.dag.needrun_jobs()),
+        {key: asked.case.model for key, asked in solves(workflow.dag.jobs).items()},
+        batches.to_solve(solves(workflow.dag.needrun_jobs())),
         cores=workflow.cores or 1,
-        log=Path("results/logs/progress.log"),
+        log=RESULTS / "logs/progress.log",
         terminal=None if quiet else sys.stderr,
     )
     logger.addHandler(progress)
@@ -40,7 +41,8 @@ def follow():
 
 def check_freefem():
     """Stop before anything runs if a case needs FreeFEM and it does not work."""
-    if any(asked.mesh for asked in solves(workflow.dag.needrun_jobs()).values()):
+    cases = solves(workflow.dag.needrun_jobs())
+    if any(cases[key].mesh for key in batches.to_solve(cases)):
         try:
             freefem.check()
         except freefem.FreeFemError as error:
@@ -57,10 +59,21 @@ def notice_damage():
 
     async def check(dag):
         dag.forcefiles.update(found)
+        for job in dag.jobs:
+            if any(str(path) in found or not path.is_file() for path in made_beside(job)):
+                dag.forcefiles.update(job.output)
         await check_others(dag)
 
     DAG.check_incomplete = check
     return found
+
+
+def made_beside(job):
+    """Files that a job makes beside those that Snakemake knows."""
+    if job.rule.name == "figures":
+        return update.files(PLAN, RESULTS)
+    cases = solves([job])
+    return [path for key, asked in cases.items() for path in batches.files_of(key, asked)]
 
 
 def clear_damage():
@@ -84,6 +97,7 @@ DAMAGED = notice_damage()
 
 onstart:
     lock.take(Path(".snakemake/run.lock"))
+    folders.take(STUDY)
     clear_damage()
     lock.tidy(Path("results"))
     check_freefem()

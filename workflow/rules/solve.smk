@@ -1,34 +1,59 @@
-# Case and mesh -> one record per case (layout: solver/record.py).
+# Cases -> meshes -> one record per case (layout: solver/record.py), many cases in one job.
 #
-#   in   the case, from the plan; its mesh; solver/ and what of geometry/ it imports
-#   out  results/cases/<key>.h5    states, fields, status; also when the solve failed
-#        results/cost/<key>.json   seconds and memory
+#   in   the cases of the study, of one scene or of an analysis; solver/, geometry/
+#   out  results/meshes/<digest>.mesh   curve mesh of the membrane, periodic cell of the braid
+#        results/meshes/<digest>.msh    wall section of the solid
+#        (why, where it cannot be meshed: the solve makes that the status mesh_failed)
+#        results/cases/<key>.h5         states, fields, status; also when the solve failed
+#        results/cost/<key>.json        seconds and memory
+#        results/solved/<asked>/<batch>.txt
 #
 # A case is named by its content: it is solved once, also after a value was changed and changed back.
+# Only the last of these files is Snakemake's, which deletes the files of a job that it stops or that
+# fails: what is solved stays solved (workflow/run/batches.py says what is solved again).
+# A case belongs to one of --config batches=N by its key. On one machine one batch is enough, which
+# takes all cores; a cluster wants as many as there shall be jobs, and snakemake --set-threads solve=N.
 # Limits are resources and no parameters: raising one does not solve anything again.
 # Cases go before figures, since one process gathers them all in the end, beside which these fit.
 
 
 rule solve:
-    input:
-        mesh=mesh_of,
-        sources=solver_sources,
     output:
-        record="results/cases/{case}.h5",
-        cost="results/cost/{case}.json",
+        f"{RESULTS}/solved/{{asked}}/{{batch}}of{BATCHES}.txt",
     log:
-        "results/logs/cases/{case}.log",
+        f"{RESULTS}/logs/solved/{{asked}}_{{batch}}of{BATCHES}.log",
     priority: 1
+    threads: lambda _: workflow.cores or 1
     resources:
         wall_time=PLAN.study.wall_time,
         memory=PLAN.study.memory,
     params:
-        case=lambda wildcards: case_of(wildcards.case).case.canonical(),
-        code=code_of,
-        mesh=lambda wildcards, input: ["--mesh", input.mesh] if input.mesh else [],
+        study=lambda _: STUDY,  # as it is, braces and all
+        asked=lambda wildcards: program_option(wildcards.asked),
+        batches=BATCHES,
+        wanted=lambda wildcards: batches.wanted(cases_of_batch(wildcards)),
     message:
-        "Solving {LABEL:{wildcards.case}}"
+        "Solving {BATCH:{wildcards.asked} {wildcards.batch}}"
     shell:
-        "python -m solver --case {params.case:q} {params.mesh:q} --code {params.code} --record {output.record:q}"
-        " --cost {output.cost:q} --log {log:q}"
+        "python -m workflow solve --study {params.study:q} {params.asked:q}"
+        " --batch {wildcards.batch} --batches {params.batches} --cores {threads}"
         " --wall-time {resources.wall_time} --memory {resources.memory}"
+        " --log {log:q} --stamp {output:q}"
+
+
+def program_option(asked):
+    """Which cases, as the program is told."""
+    kind, _, name = asked.partition("-")
+    return {"study": [], "scene": ["--scene", name], "analysis": ["--name", name]}[kind]
+
+
+class Batch:
+    """The cases that a job will solve, in messages: ``{BATCH:study 0}``."""
+
+    def __format__(self, text):
+        asked, _, batch = text.rpartition(" ")
+        cases = batches.of_batch(cases_asked(asked), int(batch), BATCHES)
+        return batches.described(cases)
+
+
+BATCH = Batch()

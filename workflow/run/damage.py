@@ -16,6 +16,12 @@ def noticed() -> dict[str, str]:
     return {path: wrong for path, wrong in found.items() if wrong}
 
 
+def at_a_glance(path: Path) -> str:
+    """What is wrong with a result, without reading it: missing, no file, of another size."""
+    seal = SEALS / path.relative_to(RESULTS)
+    return _at_a_glance(path, seal.read_text(errors="replace") if seal.is_file() else None)
+
+
 def compared() -> tuple[int, dict[str, str]]:
     """How many files have a seal, and what is wrong with those that are not as it says."""
     found = {str(path): _wrong(path, seal) for path, seal in _sealed()}
@@ -67,7 +73,7 @@ def _sealed() -> Iterator[tuple[Path, str]]:
                     yield place / name, seal.read()
 
 
-def _at_a_glance(path: Path, seal: str) -> str:
+def _at_a_glance(path: Path, seal: str | None) -> str:
     """What is wrong with a file, without reading it."""
     try:
         found = path.stat()
@@ -75,7 +81,7 @@ def _at_a_glance(path: Path, seal: str) -> str:
         return "missing"
     if not stat.S_ISREG(found.st_mode):
         return "no file"
-    if seal.split()[1:] != [str(found.st_size)]:
+    if seal is not None and seal.split()[1:] != [str(found.st_size)]:
         return f"of another size ({found.st_size} bytes)"
     return ""
 

@@ -17,6 +17,7 @@ from solver.record import Solution
 from solver.status import CaseStatus, StateStatus
 from workflow.plan.plan import Plan
 
+TABLE = Path("tables", "failures.csv")  # in the folder of a study
 COLUMNS = ("case", "label", "status", "states_missing", "reason", "scenes", "log", "analyses")
 ANSWERS = {CaseStatus.CONVERGED, CaseStatus.LIMIT_POINT}  # no equilibrium is an answer
 Row = dict[str, str]

@@ -1,5 +1,6 @@
 """One run at a time in a folder; what a killed run left does not disturb the next."""
 
+import errno
 import fcntl
 import os
 import re
@@ -9,6 +10,7 @@ from pathlib import Path
 from typing import TextIO
 
 MARK = "MUSCLE_RUN"  # environment variable of all that a run starts: the lock it holds
+NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP}
 _held: list[TextIO] = []  # open files: a lock lives as long as its file is open in a living process
 
 
@@ -26,7 +28,7 @@ def take(path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     file = path.open("a+")
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        _lock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         file.seek(0)
         owner = file.read().strip() or "unknown"
@@ -37,6 +39,25 @@ def take(path: Path) -> None:
     _held.append(file)
     os.environ[MARK] = str(path.resolve())
     _end_orphans(os.environ[MARK])
+
+
+def wait(file: int) -> None:
+    """Lock an open file or folder as soon as no other process has locked it."""
+    _lock(file, fcntl.LOCK_EX)
+
+
+def _lock(file: int, how: int) -> None:
+    """Lock an open file; where the file system has no locks, say so and go on."""
+    try:
+        fcntl.flock(file, how)
+    except OSError as error:
+        if error.errno not in NO_LOCKS:
+            raise
+        print(
+            f"warning: the file system of this folder has no locks ({error.strerror}): let no two "
+            "runs work here at a time",
+            file=sys.stderr,
+        )
 
 
 def _end_orphans(lock: str) -> None:

@@ -8,16 +8,17 @@ import json
 import logging
 import threading
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from statistics import mean
 from typing import Any, TextIO
 
 from snakemake_interface_logger_plugins.common import LogEvent
 
+from workflow.run.batches import BEGINS, NOT_SOLVED
 from workflow.run.failures import ANSWERS
+from workflow.study.folders import COST
 
-COST = Path("results/cost")
 INTERVAL = 5.0  # s between two lines, if something happened
 SILENCE = 60.0  # s after which there is a line even if nothing did
 CHATTER = {LogEvent.JOB_INFO, LogEvent.JOB_STARTED, LogEvent.JOB_FINISHED, LogEvent.PROGRESS}
@@ -56,7 +57,8 @@ class Progress(logging.Handler):
         super().__init__()
         self.cases, self.waiting, self.cores = cases, set(waiting), cores
         self.cost, self.terminal = cost, terminal
-        self.running: dict[int, tuple[str, str, float]] = {}  # job: message, case, since when
+        self.running: dict[int, str] = {}  # messages of jobs
+        self.batches: dict[int, _Batch] = {}
         self.before: dict[str, list[float]] = {}  # seconds by model, of earlier runs
         self.seconds: dict[str, list[float]] = {}  # of this one
         self.failed = 0
@@ -75,28 +77,36 @@ class Progress(logging.Handler):
         """Take notice of a job that began, ended or broke off."""
         said: Any = record  # with what Snakemake adds to it
         event = getattr(record, "event", None)
-        if event == LogEvent.JOB_INFO:
-            case = said.wildcards.get("case", "") if said.rule_name == "solve" else ""
-            message = said.rule_msg or said.rule_name
-            self.running[said.jobid] = message, case, time.monotonic()
-        elif event == LogEvent.JOB_FINISHED:
-            self._finish(said.job_id)
-        elif event == LogEvent.JOB_ERROR:
-            self.running.pop(said.jobid, None)
+        if event == LogEvent.JOB_INFO and said.rule_name == "solve":
+            log = Path(said.log[0])
+            log.unlink(missing_ok=True)  # of another run
+            self.batches[said.jobid] = _Batch(log)
+        elif event == LogEvent.JOB_INFO:
+            self.running[said.jobid] = said.rule_msg or said.rule_name
+        elif event in (LogEvent.JOB_FINISHED, LogEvent.JOB_ERROR):
+            job = said.job_id if event == LogEvent.JOB_FINISHED else said.jobid
+            self.running.pop(job, None)
+            if job in self.batches:
+                self._read(self.batches.pop(job))
         else:
             return
         self.changed = True
 
-    def _finish(self, job: int) -> None:
-        message, case, since = self.running.pop(job, ("", "", 0.0))
-        if case not in self.waiting:
-            return
-        self.waiting.discard(case)
-        self.seconds.setdefault(self.cases[case], []).append(time.monotonic() - since)
-        status, _ = self._outcome(case)
-        if _is_failure(status):
-            self.failed += 1
-            self._say(f"failed: {message.removeprefix('Solving ')}: {status}")
+    def _read(self, batch: "_Batch") -> None:
+        """Take notice of what cases of a batch have begun and ended."""
+        for word, key, label in batch.news():
+            self.changed = True
+            if word == BEGINS:
+                batch.solving[key] = label
+                continue
+            batch.solving.pop(key, None)
+            if key not in self.waiting or word == NOT_SOLVED:
+                continue
+            self.waiting.discard(key)
+            self.seconds.setdefault(self.cases[key], []).append(self._outcome(key)[1])
+            if _is_failure(word):
+                self.failed += 1
+                self._say(f"failed: {label}: {word}")
 
     def _outcome(self, key: str) -> tuple[str, float]:
         """Status and seconds of a case; empty if it has not been solved."""
@@ -126,8 +136,11 @@ class Progress(logging.Handler):
         left = self.seconds_left()
         if self.waiting and left is not None:
             parts.append(f"about {_duration(left)} left to solve")
-        if self.running:
-            parts.append("now: " + ", ".join(message for message, _, _ in self.running.values()))
+        solving = [
+            f"Solving {label}" for b in self.batches.values() for label in b.solving.values()
+        ]
+        if now := [*solving, *self.running.values()]:
+            parts.append("now: " + ", ".join(now))
         return "; ".join(parts)
 
     def close(self) -> None:
@@ -135,6 +148,7 @@ class Progress(logging.Handler):
         if not self.ended.is_set():
             self.ended.set()
             self.running.clear()
+            self.batches.clear()
             self._say(self.line())
             self.log.close()
         super().close()
@@ -143,6 +157,8 @@ class Progress(logging.Handler):
         while not self.ended.wait(INTERVAL):
             assert self.lock is not None  # every handler has one
             with self.lock:
+                for batch in list(self.batches.values()):
+                    self._read(batch)
                 silent = time.monotonic() - self.spoke > SILENCE
                 if not self.ended.is_set() and (self.changed or silent):
                     self._say(self.line())
@@ -156,6 +172,29 @@ class Progress(logging.Handler):
                 stream.flush()
             except OSError:
                 pass  # a full disk or a closed terminal is no reason to stop solving
+
+
+class _Batch:
+    """What the log of a batch says, read as it grows."""
+
+    def __init__(self, log: Path) -> None:
+        self.log, self.read = log, 0  # bytes
+        self.solving: dict[str, str] = {}  # labels by key
+
+    def news(self) -> Iterator[tuple[str, str, str]]:
+        """Word, key and label of every line that was written since the last look."""
+        try:
+            with self.log.open("rb") as stream:
+                stream.seek(self.read)
+                text = stream.read()
+        except OSError:
+            return
+        whole = text[: text.rfind(b"\n") + 1]
+        self.read += len(whole)
+        for line in whole.decode(errors="replace").splitlines():
+            parts = line.split(" ", 3)
+            if len(parts) == 4:
+                yield parts[1], parts[2], parts[3].rpartition("; ")[0] or parts[3]
 
 
 def _is_failure(status: str) -> bool:

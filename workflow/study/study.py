@@ -26,6 +26,7 @@ from solver.rubber.rubber_law import LEAST_KAPPA, RubberLaw
 from workflow.study import checks, fit, in_time, layers, sweep, units
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices, shown
+from workflow.study.folders import DEFAULT
 from workflow.study.installation import Installation
 from workflow.study.layers import Wound
 from workflow.study.limits import Limits
@@ -39,7 +40,8 @@ from workflow.study.schema import (
 from workflow.study.source import Keys, Source
 
 T = TypeVar("T")
-DEFAULT = "config/config.yaml"
+SETTINGS = ("study", "batches")  # of --config
+MOST_BATCHES = 10**6
 CAP_PER_WALL = 4  # length in the fitting by wall thickness, unless given (docs/decisions/0004)
 SHAPE_KEYS = ("inner_diameter", "wall_thickness", "length", "cap_length")
 EA = "thread_stiffness"
@@ -57,8 +59,8 @@ NOT_MEASURED = (*OF_THREAD, *BUILT_IN, "reference")
 ANY_SHAPE = {"inner_diameter": 1, "wall_thickness": 1, "length": 1, "cap_length": 0, "braid": None}
 
 
-def study_file(given: Mapping[str, object]) -> str:
-    """The study file of a run, from Snakemake's ``--config``.
+def given_settings(given: Mapping[str, object]) -> tuple[str, int]:
+    """The study file of a run and its number of batches, from Snakemake's ``--config``.
 
     Raises
     ------
@@ -66,13 +68,18 @@ def study_file(given: Mapping[str, object]) -> str:
         If another key is given, or what is no path.
     """
     for key in given:
-        if key != "study":
-            raise StudyError(f"--config {key}: no such key\n  allowed: {choices(key, ['study'])}")
-    study = given.get("study", DEFAULT)
+        if key not in SETTINGS:
+            raise StudyError(f"--config {key}: no such key\n  allowed: {choices(key, SETTINGS)}")
+    study = given.get("study", str(DEFAULT))
     if not isinstance(study, str):
         allowed = f"the path of a study file (of one that is called so: ./{study})"
         raise StudyError(f"--config study = {shown(study)} is refused\n  allowed: {allowed}")
-    return f"./{study}" if study.startswith("-") else study  # else it would be an option
+    batches = given.get("batches", 1)
+    if type(batches) is not int or not 1 <= batches <= MOST_BATCHES:
+        allowed = f"a whole number from 1 to {MOST_BATCHES}"
+        raise StudyError(f"--config batches = {shown(batches)} is refused\n  allowed: {allowed}")
+    # one that begins with a dash would be an option
+    return f"./{study}" if study.startswith("-") else study, batches
 
 
 def load(path: Path | str, findings: Findings | None = None) -> Study:
