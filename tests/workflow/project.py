@@ -127,19 +127,27 @@ class Project:
         return process.returncode, output
 
     def planned(self):
-        """What would run, by the messages of the jobs; meshes without their digest."""
-        return set(self.reasons())
-
-    def reasons(self):
-        """What would run, and the sources that are the reason for it."""
+        """What would run, by the messages of the jobs: of a batch its cases and meshes."""
         status, output = self.run("--dry-run", "--quiet", "host")
         assert status == 0, output
-        jobs = re.findall(r"^Job \d+: (.*)\nReason: (.*)$", output, re.MULTILINE)
+        jobs = re.findall(r"^Job \d+: (.*)$", output, re.MULTILINE)
         assert jobs or "Nothing to be done" in output, output
-        found = {}
-        for job, reason in jobs:
-            if not job.startswith("All is"):
-                changed = re.search(r"Updated input files: ([^;]+)", reason)
-                name = re.sub(r"^Meshing \w+", "Meshing", job)
-                found[name] = set(changed[1].split(", ")) if changed else set()
+        found = set()
+        for job in jobs:
+            verb, _, rest = job.partition(" ")
+            if verb == "Solving":
+                parts = (part.rpartition(" (")[0] for part in rest.split("; ")[1:])
+                found |= {re.sub("^Solving the mesh of", "Meshing", f"Solving {p}") for p in parts}
+            elif verb == "Drawing":
+                found |= {f"Drawing {scene}" for scene in rest.split(", ")}
+            elif verb != "All":
+                found.add(job)
         return found
+
+    def reasons(self):
+        """What would be solved, meshed and drawn, and the sources that are the reason for it."""
+        status, output = self.run("explain", program=("workflow",))
+        assert status == 0, output
+        verbs = {"solve": "Solving", "mesh": "Meshing", "draw": "Drawing"}
+        lines = re.findall(r"^  (solve|mesh|draw) +(.*?): changed: (.*)$", output, re.MULTILINE)
+        return {f"{verbs[verb]} {label}": set(why.split(", ")) for verb, label, why in lines}

@@ -4,6 +4,8 @@ import fcntl
 
 import pytest
 
+from solver.sources import sources
+
 from .project import STUDY
 
 NET = {"Solving one geometric isobaric 0.2 MPa (and 1 more)"}
@@ -15,6 +17,10 @@ CHECK = "Checking that no case failed"  # at the end of every run
 DRAW90, DRAW91 = {"Drawing fig90"}, {"Drawing fig91"}
 AFTER = GATHER | DRAW90 | DRAW91
 MESHED = MEMBRANE | SOLID
+MESH_MEMBRANE, MESH_SOLID = (
+    {job.replace("Solving", "Meshing") for job in jobs} for jobs in (MEMBRANE, SOLID)
+)
+MESHES = MESH_MEMBRANE | MESH_SOLID
 
 
 @pytest.fixture
@@ -48,7 +54,7 @@ def test_the_run_said_how_it_went(project):
     assert "5 of 5 cases solved, 0 failed" in project.said
     assert "5 of 5 cases solved" in project.read("results/logs/progress.log")
     own = next((project.folder / ".snakemake/log").iterdir()).read_text()
-    for chatter in ("Solving one solid isobaric 0.2 MPa", "Finished jobid"):
+    for chatter in ("one solid isobaric 0.2 MPa (no record)", "Finished jobid"):
         assert chatter in own  # in Snakemake's log
     assert "Finished jobid" not in project.said
 
@@ -74,7 +80,7 @@ def test_nothing_runs_after_what_means_nothing(project, edited):
 
 STUDY_CHANGES = [
     ("c10: 0.028", "c10: 0.03", {"Solving soft cylinder isobaric 0.2 MPa"} | GATHER | DRAW90),
-    ("growth: 2}", "growth: 1.9}", {"Meshing.msh"} | SOLID | GATHER | DRAW91),
+    ("growth: 2}", "growth: 1.9}", MESH_SOLID | SOLID | GATHER | DRAW91),
     ("models: [membrane, solid]", "models: [membrane]", GATHER | DRAW91),
     ("soft", "weak", GATHER | DRAW90),
 ]
@@ -101,17 +107,16 @@ def test_swapped_values_are_noticed(project, edited):
     assert project.planned() == {*AFTER, CHECK}
 
 
-MESHES = {"Meshing.mesh", "Meshing.msh"}
 COMMENT = {".py": "# edited\n", ".csv": "0.62,0.28,0,0\n"}
 EDITS = {
     # source: what runs again when it is edited
     "geometry/muscle.py": MESHES | FIG90 | MESHED | AFTER,
     "geometry/grading.py": MESHES | FIG90 | MESHED | AFTER,
-    "geometry/section.py": {"Meshing.msh"} | SOLID | GATHER | DRAW91,
-    "geometry/meridian.py": {"Meshing.mesh"} | MEMBRANE | GATHER | DRAW91,
+    "geometry/section.py": MESH_SOLID | SOLID | AFTER,
+    "geometry/meridian.py": MESH_MEMBRANE | MEMBRANE | GATHER | DRAW91,
     "geometry/whole.py": set(),
     "solver/case.py": FIG90 | MESHED | AFTER,
-    "solver/net.py": NET | GATHER | DRAW90,
+    "solver/net.py": NET | AFTER,
     "solver/models/cylinder/curve.py": (FIG90 - NET) | GATHER | DRAW90,
     "solver/models/membrane/membrane.edp": MEMBRANE | GATHER | DRAW91,
     "solver/models/solid/solid.edp": SOLID | GATHER | DRAW91,
@@ -128,8 +133,6 @@ EDITS = {
 
 
 FOLLOWS = {  # what reads what these jobs make
-    "Meshing.msh": SOLID,
-    "Meshing.mesh": MEMBRANE,
     **dict.fromkeys(FIG90, GATHER | DRAW90),
     **dict.fromkeys(MESHED, GATHER | DRAW91),
 }
@@ -138,29 +141,24 @@ FOLLOWS = {  # what reads what these jobs make
 @pytest.fixture(scope="module")
 def read_by(project):
     """The jobs that read a source, by source: those that run again when it is edited, but for
-    those that follow.
-
-    Sources are edited all at once; but a job that follows another one does not say what else has
-    changed, so there is a dry run for meshes, for solves and for the rest.
+    those that follow. Sources are edited all at once.
     """
     kept, found = {}, {}
-
-    def edit(paths):
-        paths = [path for path in paths if "__pycache__" not in str(path)]
-        for path in paths:
+    files = [*project.folder.glob("geometry/*.py"), *project.folder.glob("solver/**/*.*")]
+    files += [*project.folder.glob("workflow/**/*.py"), *project.folder.glob("config/**/*.csv")]
+    gathered = sources("workflow.programs.gather")
+    for path in files:
+        if "__pycache__" not in path.parts:
             kept[path] = path.read_text()
             path.write_text(kept[path] + COMMENT.get(path.suffix, "// edited\n"))
-        for job, sources in project.reasons().items():
-            for source in sources:
-                found.setdefault(source, set()).add(job)
-        for path in paths:
-            path.write_text(kept[path])
-
-    geometry = list(project.folder.glob("geometry/*.py"))
-    edit(geometry)
-    unread = [p for p in geometry if str(p.relative_to(project.folder)) not in found]
-    edit([*unread, *project.folder.glob("solver/**/*.*")])
-    edit([*project.folder.glob("workflow/**/*.py"), *project.folder.glob("config/**/*.csv")])
+    reasons = project.reasons()
+    for path, text in kept.items():
+        path.write_text(text)
+    for job, read in reasons.items():
+        for source in read:
+            found.setdefault(source, set()).add(job)
+    for source in gathered:
+        found.setdefault(source, set()).update(GATHER)
     return found
 
 

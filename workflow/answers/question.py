@@ -22,8 +22,9 @@ from workflow.data.strain import judged
 from workflow.plan import model_choice
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import StudyError, choices
+from workflow.study.folders import DEFAULT
 from workflow.study.schema import Scene
-from workflow.study.study import DEFAULT, load
+from workflow.study.study import load
 
 MODEL = "membrane"  # where neither a model nor a tolerance is asked for
 ROUNDS, NEAR = 10, 5e-7  # solves for a pressure, and its last change [MPa]

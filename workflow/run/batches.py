@@ -108,9 +108,12 @@ def to_solve(cases: Cases) -> dict[str, str]:
 
 def described(cases: Cases) -> str:
     """How many of some cases will be solved, which, and why, as a message."""
-    named = [f"{cases[key].label} ({why})" for key, why in to_solve(cases).items()]
+    solved = [f"{cases[key].label} ({why})" for key, why in to_solve(cases).items()]
+    meshes = {asked.mesh: (asked.label, why_meshed(asked)) for asked in cases.values()}
+    meshed = [f"the mesh of {label} ({why})" for label, why in meshes.values() if why]
+    named = [*solved, *meshed]
     more = [f"{len(named) - LISTED} more"] if len(named) > LISTED else []
-    return "; ".join([f"{len(named)} of {len(cases)} cases", *named[:LISTED], *more])
+    return "; ".join([f"{len(solved)} of {len(cases)} cases", *named[:LISTED], *more])
 
 
 def solve(cases: Cases, cores: int, limits: Limits, log: Path) -> int:

@@ -92,6 +92,11 @@ class Progress(logging.Handler):
             return
         self.changed = True
 
+    def look(self) -> None:
+        """Take notice of what batches say of their cases."""
+        for batch in list(self.batches.values()):
+            self._read(batch)
+
     def _read(self, batch: "_Batch") -> None:
         """Take notice of what cases of a batch have begun and ended."""
         for word, key, label in batch.news():
@@ -157,8 +162,7 @@ class Progress(logging.Handler):
         while not self.ended.wait(INTERVAL):
             assert self.lock is not None  # every handler has one
             with self.lock:
-                for batch in list(self.batches.values()):
-                    self._read(batch)
+                self.look()
                 silent = time.monotonic() - self.spoke > SILENCE
                 if not self.ended.is_set() and (self.changed or silent):
                     self._say(self.line())

@@ -50,7 +50,8 @@ def test_a_table_becomes_variables_with_units():
 def test_an_ended_analysis_is_added_to_the_dataset(results):
     path = results / "dataset.nc"
     before = path.stat().st_mtime_ns
-    additions.add("robustness", write_table(results), path)
+    write_table(results)
+    additions.add("robustness", results)
     with xr.open_datatree(path, engine="h5netcdf") as tree:
         assert tree["robustness"].cutbacks.values.tolist() == [0, 2]
         assert "effects" in tree.children
@@ -60,16 +61,17 @@ def test_an_ended_analysis_is_added_to_the_dataset(results):
 def test_gathered_or_added_the_bytes_are_the_same(results):
     path = results / "dataset.nc"
     table = write_table(results)
-    additions.add("robustness", table, path)
+    additions.add("robustness", results)
     others = additions.found(["robustness"], table.parent)
     dataset.write(dataset.build([], {}, effects=True, others=others), results / "gathered.nc")
     assert path.read_bytes() == (results / "gathered.nc").read_bytes()
-    additions.add("robustness", table, path)
+    additions.add("robustness", results)
     assert path.read_bytes() == (results / "gathered.nc").read_bytes()
 
 
 def test_without_a_dataset_nothing_is_made(tmp_path):
-    additions.add("robustness", write_table(tmp_path), tmp_path / "dataset.nc")
+    write_table(tmp_path)
+    additions.add("robustness", tmp_path)
     assert not (tmp_path / "dataset.nc").exists()
 
 
@@ -93,9 +95,9 @@ def test_failed_cases_of_an_analysis_stand_among_the_others(results, failed):
         failures.write_analysis(
             name, dict.fromkeys(failed, "b"), failed, tables / failures_of(name)
         )
-        additions.add_failures(path, tables)
+        additions.add_failures(results)
     added = path.read_bytes()
-    additions.add_failures(path, tables)
+    additions.add_failures(results)
     assert path.read_bytes() == added
     assert path.stat().st_mtime_ns == first
     failures.write(scenes, own, path, None, additions.failed(tables))
@@ -119,8 +121,8 @@ def test_a_case_that_no_longer_fails_is_gone(results, failed):
     failures.write(SimpleNamespace(cases={}), {}, path)
     empty = path.read_bytes()
     failures.write_analysis("effects", dict.fromkeys(failed, "b"), failed, table)
-    additions.add_failures(path, tables)
+    additions.add_failures(results)
     assert len(failures.read(path)) == 2
     failures.write_analysis("effects", {}, {}, table)
-    additions.add_failures(path, tables)
+    additions.add_failures(results)
     assert path.read_bytes() == empty

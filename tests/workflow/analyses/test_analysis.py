@@ -48,8 +48,8 @@ def test_an_analysis_that_is_not_there(capsys):
 
 
 def test_a_damaged_record_of_an_analysis_is_named(failed, tmp_path, capsys):
-    table = tmp_path / "table.csv"
-    assert main(["analysis", "--name", "some", "--table", str(table)]) == 1
+    table = tmp_path / "results/tables/some.csv"
+    assert main(["analysis", "--name", "some"]) == 1
     said = capsys.readouterr().err
     assert f"{records.path_of(failed[0].case.key)}: should hold a geometric" in said
     assert not table.exists()

@@ -19,18 +19,25 @@ def message(event=None, text="", **fields):
     return record
 
 
-def begin(job, case):
-    return message(
-        LogEvent.JOB_INFO,
-        jobid=job,
-        rule_name="solve",
-        rule_msg=f"Solving {case}",
-        wildcards={"case": case},
-    )
+@pytest.fixture
+def batch(tmp_path):
+    """A batch of cases: ``begin`` and ``end`` of its job, ``tell`` what its log gets of cases."""
 
+    class Batch:
+        log = tmp_path / "batch.log"
 
-def end(job):
-    return message(LogEvent.JOB_FINISHED, job_id=job)
+        def begin(self, job):
+            log, name = [str(self.log)], "Solving 2 of 4 cases"
+            return message(LogEvent.JOB_INFO, jobid=job, rule_name="solve", rule_msg=name, log=log)
+
+        def end(self, job):
+            return message(LogEvent.JOB_FINISHED, job_id=job)
+
+        def tell(self, word, key, more=""):
+            with self.log.open("a") as stream:
+                stream.write(f"12:00:00 {word} {key} one {key}{more}\n")
+
+    return Batch()
 
 
 @pytest.fixture
@@ -61,30 +68,47 @@ def solved(folder, key, status="converged", seconds=2.0):
     (folder / f"{key}.json").write_text(text)
 
 
-def test_counts_and_what_runs(follow, tmp_path):
+def test_counts_and_what_runs(follow, batch, tmp_path):
     run = follow("a", "c")  # b and d were solved before
     assert run.line() == "2 of 4 cases solved, 0 failed"
-    run.emit(begin(7, "a"))
-    run.emit(
-        message(LogEvent.JOB_INFO, jobid=8, rule_name="mesh", rule_msg="Meshing", wildcards={})
-    )
-    assert run.line() == "2 of 4 cases solved, 0 failed; now: Solving a, Meshing"
+    batch.tell("begins", "d")  # another run's
+    run.emit(batch.begin(7))
+    batch.tell("begins", "a")
+    run.emit(message(LogEvent.JOB_INFO, jobid=8, rule_name="muscle", rule_msg="Building"))
+    run.look()
+    assert run.line() == "2 of 4 cases solved, 0 failed; now: Solving one a, Building"
     solved(tmp_path, "a")
-    run.emit(end(7))
+    batch.tell("converged", "a", "; 2.00 s")
+    run.look()
     run.emit(message(LogEvent.JOB_ERROR, jobid=8))
     assert run.line().startswith("3 of 4 cases solved, 0 failed; about")
     assert "now" not in run.line()
 
 
-def test_a_failed_case_is_named_at_once(follow, tmp_path):
+def test_a_failed_case_is_named_at_once(follow, batch, tmp_path):
     solved(tmp_path, "d", "timeout")  # before
     solved(tmp_path, "b", "limit_point")  # an answer and no failure
     run = follow("a", "c")
-    run.emit(begin(1, "a"))
-    solved(tmp_path, "a", "stalled")
-    run.emit(end(1))
-    assert "failed: a: stalled" in run.terminal.getvalue()
-    assert "3 of 4 cases solved, 2 failed" in run.line()
+    run.emit(batch.begin(1))
+    for key, word in (("a", "stalled"), ("c", "not_solved")):
+        batch.tell("begins", key)
+        batch.tell(word, key, "; 2.00 s")
+    run.emit(batch.end(1))
+    assert "failed: one a: stalled" in run.terminal.getvalue()
+    assert "3 of 4 cases solved, 2 failed" in run.line()  # c will be tried again
+
+
+def test_half_a_line_is_read_when_it_is_whole(follow, batch):
+    run = follow("a", "c")
+    run.emit(batch.begin(1))
+    with batch.log.open("a") as stream:
+        stream.write("12:00:00 converged a o")
+        stream.flush()
+        run.look()
+        assert "2 of 4" in run.line()
+        stream.write("ne a; 1.00 s\n")
+    run.look()
+    assert "3 of 4" in run.line()
 
 
 def test_time_left_is_by_model(follow, tmp_path):
@@ -98,11 +122,12 @@ def test_time_left_is_by_model(follow, tmp_path):
     assert follow("a", cores=8).seconds_left() == pytest.approx(2)  # one case, one core
 
 
-def test_terminal_and_log_say_the_same(follow, tmp_path, monkeypatch):
+def test_terminal_and_log_say_the_same(follow, batch, tmp_path, monkeypatch):
     monkeypatch.setattr(progress, "INTERVAL", 0.01)
     run = follow("a")
-    run.emit(begin(1, "a"))
-    while "Solving a" not in run.terminal.getvalue():
+    run.emit(batch.begin(1))
+    batch.tell("begins", "a")
+    while "Solving one a" not in run.terminal.getvalue():
         pass
     run.close()
     text = (tmp_path / "logs/progress.log").read_text()
@@ -110,20 +135,21 @@ def test_terminal_and_log_say_the_same(follow, tmp_path, monkeypatch):
     assert text.splitlines()[-1].endswith("3 of 4 cases solved, 0 failed")
 
 
-def test_what_cannot_be_written_stops_nothing(follow, tmp_path):
+def test_what_cannot_be_written_stops_nothing(follow, batch, tmp_path):
     run = follow("a")
     run.log.close()
     run.log = open("/dev/full", "w")  # noqa: SIM115
-    run.emit(begin(1, "a"))
+    run.emit(batch.begin(1))
     run._say("something")
     (tmp_path / "a.json").write_text("{")
-    run.emit(end(1))
+    batch.tell("converged", "a", "; 2.00 s")
+    run.emit(batch.end(1))
     assert run.line() == "4 of 4 cases solved, 0 failed"
     run.log = io.StringIO()
 
 
-def test_errors_are_no_chatter():
+def test_errors_are_no_chatter(batch):
     assert is_no_chatter(message(LogEvent.JOB_ERROR))
     assert is_no_chatter(message(text="Shutting down, this might take some time."))
-    assert not is_no_chatter(begin(1, "a"))
+    assert not is_no_chatter(batch.begin(1))
     assert not is_no_chatter(message(text="Select jobs to execute..."))
