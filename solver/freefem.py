@@ -171,6 +171,16 @@ def environment(includes: Sequence[Path] = (PATH,)) -> dict[str, str]:
     return os.environ | own
 
 
+def _whole(folder: Path, workdir: Path, number: int) -> Path:
+    """A folder of includes by a name that FreeFEM does not divide: it does at a semicolon."""
+    if ";" not in str(folder):
+        return folder
+    link = workdir / f"includes_{number}"
+    link.unlink(missing_ok=True)
+    link.symlink_to(folder)
+    return link
+
+
 def run(
     program: Path,
     flags: dict[str, str | float],
@@ -201,7 +211,7 @@ def run(
         process = family.start(
             command(program, flags),
             workdir,
-            environment(includes),
+            environment([_whole(f, workdir, k) for k, f in enumerate(includes)]),
             stream,
             lambda: _limit(limits),
         )

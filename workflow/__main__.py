@@ -7,6 +7,8 @@ few lines.
 
 import argparse
 import ast
+import os
+import signal
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -14,12 +16,15 @@ from pathlib import Path
 from workflow.study.errors import StudyError
 
 FOLDER = Path(__file__).parent / "programs"
+INTERRUPTED = 128 + signal.SIGINT  # exit status, as a shell gives it
 NO_PROGRAMS = ("__init__", "case_options")  # what programs share
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the program that the first argument names; only that is imported."""
     given = sys.argv[1:] if arguments is None else arguments
+    os.environ["MPLBACKEND"] = "agg"  # that of a notebook may not be here
+    os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # files are whole or absent
     name = given[0] if given else ""
     if name not in names():
         _parser().parse_args(given or ["--help"])
@@ -31,6 +36,8 @@ def main(arguments: list[str] | None = None) -> int:
     except (StudyError, OSError) as error:
         print(error, file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        return INTERRUPTED
 
 
 def names() -> list[str]:

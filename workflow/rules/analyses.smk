@@ -1,6 +1,6 @@
 # Analyses of the models, each a target of its name: snakemake --cores 2 robustness
 #
-#   in   the records of its cases, files of the user; workflow/analyses/<name>/
+#   in   the records of its cases; files of the user (by content); workflow/analyses/<name>/
 #   out  results/tables/<name>.csv            and others beside it
 #        results/tables/<name>_failures.csv   cases that did not work out
 #        results/figures/<...>.png, .svg
@@ -16,7 +16,6 @@ for each in ANALYSES.values():
             each.target or each.name
         input:
             solved=lambda wildcards, name=each.name: solved(f"analysis-{name}"),
-            files=each.inputs(PLAN.study),
             # Added to, not read. Not ancient(): with that Snakemake (9.27) leaves the analysis out of
             # a run in which the dataset is gathered again, even where its outputs are missing.
             dataset=f"{RESULTS}/dataset.nc" if each.in_dataset else [],
@@ -35,6 +34,9 @@ for each in ANALYSES.values():
         params:
             study=lambda _: STUDY,  # as it is, braces and all
             name=each.name,
+            files=lambda wildcards, files=each.inputs(PLAN.study): {
+                file: seal_of(Path(file)) for file in files
+            },
             asked=lambda wildcards, name=each.name: ANALYSES[name].digest(PLAN.study),
             code=lambda wildcards, modules=each.modules: code(
                 "workflow.programs.analysis", *modules

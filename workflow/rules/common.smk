@@ -15,6 +15,7 @@ from pathlib import Path
 CHECKOUT = workflow.basedir
 sys.path.insert(0, CHECKOUT)
 
+from geometry.files import seal_of
 from solver import sources
 from workflow.analyses import analysis
 from workflow.analyses.registry import ANALYSES

@@ -2,6 +2,8 @@
 # at before anything is solved, and how far it is. No rules in this file.
 #
 #   out  results/logs/progress.log
+import signal
+
 from snakemake.dag import DAG
 from snakemake.logging import logger
 from snakemake.settings.enums import Quietness
@@ -92,7 +94,23 @@ def look_once():
     workflow.scheduler.job_rate_limiter = None
 
 
+def interrupted(*_):
+    """Ctrl-C: end with one sentence; Snakemake tidies up and is not heard."""
+    if not PROGRESS:
+        print(STOPPED, file=sys.stderr)
+        os._exit(1)  # nothing has begun
+    for handler in logger.handlers:
+        if handler.name == "DefaultStreamHandler":
+            handler.addFilter(lambda _: False)
+    PROGRESS[0].stop(STOPPED)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it is known
+    raise KeyboardInterrupt
+
+
+damage.end_future(RESULTS)
+STOPPED = "Stopped. What is solved and drawn stays; the next run goes on from there."
 DAMAGED = notice_damage()
+signal.signal(signal.SIGINT, interrupted)
 
 
 onstart:

@@ -148,6 +148,11 @@ class Progress(logging.Handler):
             parts.append("now: " + ", ".join(now))
         return "; ".join(parts)
 
+    def stop(self, why: str) -> None:
+        """Say why the run is given up, and nothing more in the terminal."""
+        self._say(why)
+        self.terminal = None
+
     def close(self) -> None:
         """Say how it ended."""
         if not self.ended.is_set():

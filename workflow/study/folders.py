@@ -12,6 +12,7 @@ from workflow.study.errors import StudyError
 
 DEFAULT = Path("config/config.yaml")  # the study of the paper
 CASES, COST, MESHES = RESULTS / "cases", RESULTS / "cost", RESULTS / "meshes"
+STORE = {RESULTS / name for name in ("cases", "cost", "logs", "made", "meshes", "seals", "sources")}
 LOGS = RESULTS / "logs" / "cases"
 SAME = ("study", "config")  # stems that say nothing: such a study is called like its folder
 OWNER = "study.txt"  # in the folder of a study: which file it is

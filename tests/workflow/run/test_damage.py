@@ -1,7 +1,9 @@
 """Results that are not as they were written are named, and only what may be wrong is read."""
 
 import os
+import time
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
@@ -82,3 +84,16 @@ def test_no_seals_are_no_proof(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(StudyError, match="no seals"):
         damage.report(delete=False)
+
+
+def test_what_is_dated_tomorrow_is_dated_now(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    tomorrow = time.time() + 86400
+    files = [Path("results", name) for name in ("dataset.nc", "tables/a.csv", "cases/a.h5")]
+    for path in files:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+        os.utime(path, (tomorrow, tomorrow))
+    (Path("results") / "broken").symlink_to("nowhere")
+    damage.end_future(Path("results"))
+    assert [path.stat().st_mtime > time.time() for path in files] == [False, False, True]
