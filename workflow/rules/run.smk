@@ -62,7 +62,8 @@ def notice_damage():
     async def check(dag):
         dag.forcefiles.update(found)
         for job in dag.jobs:
-            if any(str(path) in found or not path.is_file() for path in made_beside(job)):
+            lost = any(str(path) in found or not path.is_file() for path in made_beside(job))
+            if lost or job.rule.name == "figure" and will_be_drawn(job.wildcards.figure):
                 dag.forcefiles.update(job.output)
         await check_others(dag)
 

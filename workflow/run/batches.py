@@ -86,7 +86,7 @@ def why_solved(key: str, asked: Planned) -> str:
     try:
         code = record.code_of(_record(key))
     except record.NoRecord:
-        return "its record is damaged"
+        return "no readable record"
     return made.why(code, _sources(asked.case))
 
 

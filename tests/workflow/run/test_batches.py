@@ -54,7 +54,7 @@ def test_what_is_right_is_not_solved_again(cases, tmp_path):
     with (CASES / f"{membrane}.h5").open("r+b") as file:
         file.seek(3000)
         file.write(b"flipped")
-    assert batches.to_solve(cases) == {membrane: "its record is damaged"}
+    assert batches.to_solve(cases) == {membrane: "no readable record"}
     assert list(solve(cases, tmp_path)[1]) == [membrane]
     next(MESHES.iterdir()).unlink()
     assert list(solve(cases, tmp_path)[1].values()) == ["meshed"]
