@@ -52,17 +52,30 @@ def test_a_task_waits_for_another_and_no_core_for_it(cores, tmp_path):
     assert begun == (["first", "last", "other"] if cores == 1 else ["first", "other", "last"])
 
 
-def test_no_more_at_a_time_than_cores(tmp_path):
+def test_as_many_at_a_time_as_there_are_cores(tmp_path):
+    """All begin before any of the first ones ends, and no other one does."""
+
+    def meet(name):
+        (tmp_path / name).touch()
+        until = time.monotonic() + 30
+        while len(list(tmp_path.iterdir())) < 3 and time.monotonic() < until:
+            time.sleep(0.01)
+        return len(list(tmp_path.iterdir()))
+
+    names = ["a", "b", "c"]
+    _, ended = ends([task(name, partial(meet, name)) for name in names], cores=3)
+    assert ended == dict.fromkeys(names, 3)
+    for path in tmp_path.iterdir():
+        path.unlink()
+
     def count(name):
         (tmp_path / name).touch()
-        time.sleep(0.05)
         found = len(list(tmp_path.iterdir()))
         (tmp_path / name).unlink()
         return found
 
-    _, ended = ends([task(f"{k}", partial(count, f"{k}")) for k in range(8)], cores=3)
-    assert max(ended.values()) <= 3
-    assert max(ended.values()) > 1
+    _, ended = ends([task(f"{k}", partial(count, f"{k}")) for k in range(6)], cores=2)
+    assert max(ended.values()) <= 2
 
 
 def test_processes_that_nobody_waits_for_are_ended(tmp_path):
