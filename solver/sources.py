@@ -12,16 +12,23 @@ names: whoever asks names that module as well; ``of_mesh`` and ``of_solve`` do.
 
 import ast
 import hashlib
+import json
+import os
 from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
+from geometry.files import RESULTS, atomic_write
 from solver.models import MODELS
 from solver.rubber import LAWS, default
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("geometry", "solver", "workflow")
+MEMORY = RESULTS / "sources" / "closures.txt"
 DECLARATION = "DATA"  # name of the constant
+
+
+_found: dict[str, list[str]] = {}  # by this process
 
 
 def sources(*modules: str) -> list[str]:
@@ -34,11 +41,48 @@ def sources(*modules: str) -> list[str]:
     FileNotFoundError
         If a module declares data of which there is none.
     """
-    found: set[str] = set()
-    for module in closure(modules):
-        found.add(_file(module).relative_to(ROOT).as_posix())
-        found.update(_data(module))
-    return sorted(found)
+    asked = " ".join(sorted(modules))
+    if asked not in _remembered():
+        found: set[str] = set()
+        for module in closure(modules):
+            found.add(_file(module).relative_to(ROOT).as_posix())
+            found.update(_data(module))
+        _found[asked] = sorted(found)
+        return sorted(found)
+    return _remembered()[asked]
+
+
+def remember() -> None:
+    """Keep what was found, until a file of the checkout changes: parsing takes half a second."""
+    if _found:
+        text = json.dumps(_remembered() | _found, sort_keys=True)
+        with atomic_write(MEMORY, sealed=False) as beside:
+            beside.write_text(f"{_stamp(text)}\n{text}")
+
+
+@cache
+def _remembered() -> dict[str, list[str]]:
+    """What was found by another process with the same files."""
+    try:
+        stamp, _, text = MEMORY.read_text().partition("\n")
+    except (OSError, ValueError):
+        return {}
+    return dict(json.loads(text)) if stamp == _stamp(text) else {}
+
+
+def _stamp(text: str) -> str:
+    """Digest of a text, of the names of all files, and of all Python there is."""
+    found = hashlib.sha256(text.encode())
+    for folder in (*PACKAGES, "config"):
+        for place, _, names in sorted(os.walk(ROOT / folder)):
+            for name in sorted(names):
+                path = os.path.join(place, name)
+                if name.endswith(".pyc"):
+                    continue
+                found.update(f"\n{os.path.relpath(path, ROOT)}\n".encode())
+                if name.endswith(".py"):
+                    found.update(Path(path).read_bytes())
+    return found.hexdigest()
 
 
 @cache

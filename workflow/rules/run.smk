@@ -119,6 +119,7 @@ onstart:
     folders.take(STUDY)
     clear_damage()
     lock.tidy(Path("results"))
+    sources.remember()
     check_freefem()
     follow()
     look_once()

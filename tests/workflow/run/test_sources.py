@@ -159,3 +159,37 @@ def test_a_solve_has_the_files_of_its_own_law(model, law):
         file.split("/")[2] for file in of_solve(model, law) if file.startswith("solver/rubber/")
     }
     assert rooms & set(LAWS) == {law}
+
+
+@pytest.fixture
+def forgotten(packages, monkeypatch, tmp_path):
+    """Packages of which nothing is remembered; a function that makes this process another one."""
+    monkeypatch.setattr(module, "MEMORY", tmp_path / "results/closures.txt")
+    monkeypatch.setattr(module, "_found", {})
+
+    def another():
+        for cached in (module._remembered, module._imported, module._tree, module._file):
+            cached.cache_clear()
+
+    another()
+    yield packages, another
+    module._remembered.cache_clear()
+
+
+def test_what_was_found_is_remembered_until_a_file_changes(forgotten, monkeypatch):
+    packages, another = forgotten
+    packages(workflow__a="import workflow.b\n", workflow__b="", workflow__c="")
+    found = sources("workflow.a")
+    module.remember()
+    another()
+    with monkeypatch.context() as patched:
+        patched.setattr(module, "closure", None)  # not asked
+        assert sources("workflow.a") == found
+    packages(workflow__b="import workflow.c\n")
+    another()
+    assert sources("workflow.a") == [*found, "workflow/c.py"]
+    module.remember()
+    text = module.MEMORY.read_text()
+    module.MEMORY.write_text(text.replace("workflow/c.py", "workflow/d.py"))
+    another()
+    assert sources("workflow.a") == [*found, "workflow/c.py"]
