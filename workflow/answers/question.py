@@ -101,7 +101,7 @@ def ask(
     StudyError
         If the question makes no sense, or there is no such state.
     """
-    found = study if isinstance(study, Study) else load(study)
+    found = study if isinstance(study, Study) else load(study, also=(muscle,))
     return _Question(found, muscle, variant).answer(
         {PRESSURE: pressure, CONTRACTION: contraction, FORCE: force}, model, tolerance
     )

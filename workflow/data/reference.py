@@ -1,4 +1,4 @@
-"""Force maps of real muscles, the manufacturer's and a measured one of DMSP-20-300.
+"""Force maps of real muscles, the manufacturer's and measured ones.
 
 Sources: config/reference/SOURCES.md. A muscle of a study is compared with those that are its own,
 which its key ``reference`` names.
@@ -21,7 +21,6 @@ from workflow.study.schema import FORCE_MAPS
 
 FOLDER = Path(__file__).parents[2] / "config" / "reference"
 DATA = ("config/reference/*.csv",)
-NOMINAL_LENGTH = 300.0  # mm, of the muscle that was measured
 SMALL = 0.1  # share of a curve's largest force below which a relative deviation means nothing
 DENSE = np.linspace(0, 0.2, 201)  # contractions among which a map has its largest force
 CONTRACTIONS = (0.0, 0.05, 0.1, 0.15, 0.2)  # at which curves are compared with a map
@@ -132,23 +131,54 @@ def musclesim() -> ForceMap:
 
 
 def martens2017() -> ForceMap:
-    """The measured map; a force of 0 means that the muscle was slack and is no force."""
-    rows = _rows("martens2017_dmsp20_300_measured.csv")
+    """The map that was measured on DMSP-20-300."""
+    return _by_length("martens2017", "martens2017_dmsp20_300_measured.csv", 300.0)
+
+
+def martens2017_dmsp10() -> ForceMap:
+    """The map that was measured on DMSP-10-250."""
+    return _by_length("martens2017_dmsp10", "martens2017_dmsp10_250_measured.csv", 250.0)
+
+
+def _by_length(name: str, file: str, length: float) -> ForceMap:
+    """A map of a muscle of a length [mm]; a force of 0 means that it was slack and is no force."""
     points = [
         (
             float(row["pressure_MPa"]),
-            round(1 - float(row["length_mm"]) / NOMINAL_LENGTH, 12),
+            round(1 - float(row["length_mm"]) / length, 12),
             float(row["force_N"]),
         )
-        for row in rows
+        for row in _rows(file)
         if float(row["force_N"]) != 0
     ]
-    return ForceMap("martens2017", "Martens & Boblan 2017", _points(points), _points([]))
+    return ForceMap(name, "Martens & Boblan 2017", _points(points), _points([]))
+
+
+def musclesim_dmsp40() -> ForceMap:
+    """The manufacturer's map of DMSP-40."""
+    return _plain("festo_musclesim_dmsp40", "Festo MuscleSIM", "festo_musclesim_dmsp40.csv")
+
+
+def sarosi2012() -> ForceMap:
+    """A function fitted to what was measured on DMSP-20-200."""
+    return _plain("sarosi2012", "Sárosi 2012", "sarosi2012_dmsp20_200_fit.csv")
+
+
+def _plain(name: str, label: str, file: str) -> ForceMap:
+    points = [
+        (float(row["pressure_MPa"]), float(row["contraction"]), float(row["force_N"]))
+        for row in _rows(file)
+    ]
+    return ForceMap(name, label, _points(points), _points([]))
 
 
 # How each is read, when it is asked for.
 MAPS: dict[str, Callable[[], ForceMap]] = dict(
-    zip(FORCE_MAPS, (musclesim, martens2017), strict=True)
+    zip(
+        FORCE_MAPS,
+        (musclesim_dmsp40, martens2017_dmsp10, sarosi2012, musclesim, martens2017),
+        strict=True,
+    )
 )
 
 

@@ -34,7 +34,7 @@ def run(given: argparse.Namespace) -> int:
     from workflow.answers.question import as_dict, ask, lines
     from workflow.study.study import load
 
-    study = load(given.study)
+    study = load(given.study, also=(given.muscle,))
     asked = {kind: getattr(given, kind) for kind in quantities.KINDS}
     length = study.muscles[given.muscle].muscle.length if given.muscle in study.muscles else 1.0
     for text in quantities.split(given.quantities):

@@ -42,7 +42,9 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
         known = dict.fromkeys(["default"] * (key == "variants") + source.names(key))
         for named in getattr(asked, key):
             if named not in known:
-                yield source.refuse((*keys, key), named, choices(named, known))
+                allowed = choices(named, known)
+                allowed = source.choices(key, named) if key == "muscles" else allowed
+                yield source.refuse((*keys, key), named, allowed)
     lacking = list(figure_needs.lacking(name, asked))
     for key, value, allowed in lacking:
         yield source.refuse((*keys, key), value, allowed)
@@ -146,7 +148,8 @@ def calibration(study: Study, name: str) -> Iterator[StudyError]:
     source, entry, keys = study.source, study.calibration[name], ("calibration", name)
     made, muscles = study.muscles.get(entry.muscle), source.names("muscles")
     if entry.muscle not in muscles:
-        yield source.refuse((*keys, "muscle"), entry.muscle, choices(entry.muscle, muscles))
+        allowed = source.choices("muscles", entry.muscle)
+        yield source.refuse((*keys, "muscle"), entry.muscle, allowed)
     elif group := source.groups.get(entry.muscle):
         allowed = f"one muscle; of {entry.muscle} there are {choices(entry.muscle, group)}"
         yield source.refuse((*keys, "muscle"), entry.muscle, allowed)

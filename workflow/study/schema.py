@@ -59,7 +59,13 @@ QUANTITIES = {  # models that can give it
     **{name: tuple(MODELS) for name in ZERO_FORCE},
     SHEET: tuple(m for m in MODELS if {"volume", "stiffness"} <= set(MODELS[m].quantities)),
 }
-FORCE_MAPS = ("festo_musclesim", "martens2017")  # read by workflow/data/reference.py
+FORCE_MAPS = (  # read by workflow/data/reference.py
+    "festo_musclesim_dmsp40",
+    "martens2017_dmsp10",
+    "sarosi2012",
+    "festo_musclesim",
+    "martens2017",
+)
 MOST_THREADS = 10_000  # more is a typing error
 IN_TIME = ("cycle", "transient")  # paths beside those of PathKind
 KIND_OF_HELD = {kind.held.key: kind.value for kind in PathKind}

@@ -1,6 +1,6 @@
 """The text of a study file: what stands in it, and every refusal with its line."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar, get_args
@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from geometry.refusal import Refusal
-from workflow.study import plain_yaml, units, user_file
+from workflow.study import library, plain_yaml, units, user_file
 from workflow.study.errors import Findings, StudyError, choices, printable, shown
 from workflow.study.plain_yaml import Node, UnreadableText
 from workflow.study.schema import (
@@ -33,8 +33,9 @@ class Source:
 
     Attributes
     ----------
-    plain : dicts, lists and scalars
+    plain : dicts, lists and scalars, with the entries of the library that are named
     root : the same with line numbers
+    library : which entries, by section and name, stand in the library and not in the file
     groups : names of the muscles of a sweep or table, by that of their entry
     files : tables in which muscles stand, by the muscle's name
     """
@@ -42,12 +43,13 @@ class Source:
     path: Path
     plain: Any
     root: Node
+    library: Set[Keys] = frozenset()
     groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
-    def read(cls, path: Path) -> "Source":
-        """Parse a file; a duplicate key is an error."""
+    def read(cls, path: Path, also: Collection[str] = ()) -> "Source":
+        """Parse a file; a duplicate key is an error. ``also``: muscles of the library."""
         text = user_file.text_of(path)
         try:
             root = plain_yaml.read(text)
@@ -57,7 +59,15 @@ class Source:
                 where = printable(str(path)) + (f":{line}" if line else "")
                 findings.add(StudyError(f"{where}: {problem}", line or 0))
             raise findings.error() from None
-        return cls(path, root.plain(), root)
+        root, taken = library.completed(path, root, also)
+        return cls(path, root.plain(), root, taken)
+
+    @classmethod
+    def of_library(cls) -> "Source":
+        """All entries of the library, as if a study had them."""
+        root = library.whole()
+        taken = {(s, name) for s in library.SECTIONS for name in library.names(s)}
+        return cls(Path(library.FOLDER), root.plain(), root, taken)
 
     def validated(self, findings: Findings) -> StudyFile:
         """The entries that fit the schema; of the others, and of what has no value, the errors."""
@@ -106,6 +116,8 @@ class Source:
         if keys[0] == "muscles" and len(keys) > 1:
             file = self.files.get(str(keys[1]), file)
         name = printable(file)
+        if keys[:2] in self.library:
+            name = library.file(str(keys[0]))
         where = f"{name}:{line}" if line is not None else name
         return f"{where}: {'.'.join(_readable(key) for key in keys)}"
 
@@ -149,6 +161,18 @@ class Source:
         """Names of the entries of a section, right or wrong."""
         found = self.plain.get(section)
         return [name for name in found if isinstance(name, str)] if isinstance(found, dict) else []
+
+    def choices(self, section: str, value: object) -> str:
+        """The names of a section and of the library, with the nearest one."""
+        own = [name for name in self.names(section) if (section, name) not in self.library]
+        said = choices(value, own)
+        others = [name for name in library.names(section) if name not in own]
+        if not others:
+            return said
+        _, near, nearest = choices(value, others).partition("(nearest: ")
+        if near and "(nearest: " not in said:
+            return f"{said} or, of the library, {nearest.rstrip(')')}"
+        return f"{said} or one of the library (python -m workflow list)"
 
     def checked(
         self,

@@ -5,10 +5,10 @@ here, and every muscle is built, so that what cannot be built is refused before 
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -82,8 +82,8 @@ def given_settings(given: Mapping[str, object]) -> tuple[str, int]:
     return f"./{study}" if study.startswith("-") else study, batches
 
 
-def load(path: Path | str, findings: Findings | None = None) -> Study:
-    """Read a study file.
+def load(path: Path | str, findings: Findings | None = None, also: Collection[str] = ()) -> Study:
+    """Read a study file; ``also`` names muscles of the library to take beside those it names.
 
     With ``findings`` errors are noted there, and the study has what can be used in spite of them.
 
@@ -92,8 +92,18 @@ def load(path: Path | str, findings: Findings | None = None) -> Study:
     StudyError
         With all errors, each naming file, line, key, value and what is allowed.
     """
+    return _of(Source.read(Path(path), also), findings)
+
+
+@cache
+def load_library() -> Study:
+    """The muscles of the library (workflow/study/library.py)."""
+    return _of(Source.of_library(), None)
+
+
+def _of(source: Source, findings: Findings | None) -> Study:
+    """The study of a source."""
     found = Findings() if findings is None else findings
-    source = Source.read(Path(path))
     source, file = sweep.spread(source, source.validated(found), found)
     rubbers: dict[str, RubberLaw] = {}
     limits: dict[str, Limits] = {}
@@ -313,8 +323,8 @@ class _Muscles:
         if material not in self.rubbers:
             if material in self.source.names("materials"):
                 raise AlreadyRefused
-            known = self.source.names("materials")
-            raise self._refuse(name, "material", material, choices(material, known))
+            allowed = self.source.choices("materials", material)
+            raise self._refuse(name, "material", material, allowed)
         return self.rubbers[material]
 
     def _thread(self, name: str, values: dict[str, Any]) -> Thread:
@@ -483,7 +493,7 @@ class _Muscles:
         self._lost.update(chain)
         if refused:
             raise AlreadyRefused
-        allowed = choices(other, known)
+        allowed = self.source.choices("muscles", other)
         if other in chain:
             names = [*chain]
             circle = [*names[names.index(other) :], other]
