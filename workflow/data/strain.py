@@ -1,6 +1,7 @@
 """Judges states by what thread and rubber bear (workflow/study/limits.py), when they are gathered.
 
-A state beyond a limit is ``overstrained`` and its note says by what. Where no strength of the
+A state beyond a limit is ``overstrained``, one beyond the tests to which the law of its rubber was
+fitted ``beyond_fit``, and its note says by what. Where no strength of the
 thread is given, states with threads stretched by more than 5 % have a note and no flag.
 """
 
@@ -48,11 +49,18 @@ def _verdicts(
             beyond.append(f"thread tension {tension[number]:.3g} N, of {strength:g} N")
         if limit is not None and rubber[number] > limit:
             beyond.append(f"rubber stretch {rubber[number]:.3g}, of {limit:g}")
+        fitted = limits.fitted_range
+        outside = fitted is not None and rubber[number] > fitted[1]
+        if fitted is not None and outside:
+            said.append(
+                f"rubber stretch {rubber[number]:.3g}; its law was fitted up to {fitted[1]:g}"
+            )
         if strength is None and stretch > LONG:
             said.append(f"threads stretched to {stretch:.3g}; {UNKNOWN}")
         if limits.room and np.isfinite(solution.states["force"][number]):
             said.append(limits.room)
-        yield frozenset([Flag.OVERSTRAINED] if beyond else []), beyond + said
+        flags = {Flag.OVERSTRAINED: beyond, Flag.BEYOND_FIT: outside}
+        yield frozenset(flag for flag, holds in flags.items() if holds), beyond + said
 
 
 def summary(curves: Iterable[Any]) -> dict[str, str]:

@@ -25,6 +25,7 @@ class Limits:
 
     thread_strength: float | None = field(default=None, metadata={"unit": "N"})  # tension
     stretch_limit: float | None = field(default=None, metadata={"unit": "1"})  # of the rubber
+    fitted_range: tuple[float, float] | None = None  # stretches to which its law was fitted
     room: str = ""
 
     def __post_init__(self) -> None:
@@ -34,3 +35,8 @@ class Limits:
         if not (stretch is None or (is_number(stretch) and stretch > 1)):
             allowed = "a finite number > 1, of the deformed by the first length"
             raise UnusableLimit("stretch_limit", stretch, allowed)
+        if self.fitted_range is not None:
+            low, high = self.fitted_range
+            if not 0 < low <= 1 < high:
+                allowed = "two stretches, from above 0 to 1, and > 1"
+                raise UnusableLimit("fitted_range", [low, high], allowed)

@@ -233,17 +233,17 @@ class MaterialEntry(Entry):
     law: str
     kappa: Number = 1000.0
     stretch_limit: Number | None = None
+    fitted_range: Range | None = None  # of stretches
     memory: MemoryEntry | None = None
     density: Number | None = None  # g/cm3
 
 
-def _numbers(value: object) -> tuple[object, ...]:
+def _one_or_more(value: object) -> tuple[object, ...]:
     """A list of numbers; one number is a list of one."""
-    found = value if isinstance(value, list) else [value]
-    return tuple(_bounded(each) for each in found)
+    return tuple(value) if isinstance(value, list) else (value,)
 
 
-Numbers = Annotated[tuple[float, ...], BeforeValidator(_numbers)]
+Numbers = Annotated[tuple[Number, ...], BeforeValidator(_one_or_more)]
 
 
 def _kind_of(parameter: Parameter) -> Any:

@@ -117,7 +117,7 @@ def _of(source: Source, findings: Findings | None) -> Study:
         with found.gathering():
             rubbers[name] = _rubber(source, found, name, material)
         with found.gathering():
-            values = material.model_dump(include={"stretch_limit"})
+            values = material.model_dump(include={"stretch_limit", "fitted_range"})
             limits[name] = source.checked(("materials", name), Limits, values)
             values = material.model_dump(include={"density"})
             weights[name] = source.checked(("materials", name), Installation, values)
@@ -170,7 +170,7 @@ def _fit(study: Study, name: str) -> CalibrationEntry:
 def _rubber(source: Source, found: Findings, name: str, entry: MaterialEntry) -> RubberLaw:
     """The rubber of an entry; a bulk modulus that was left out is not to blame."""
     keys = ("materials", name)
-    unread = {"stretch_limit", "density", "law", "memory"}
+    unread = {"stretch_limit", "fitted_range", "density", "law", "memory"}
     law, values = LAWS[entry.law], entry.model_dump(exclude=unread)
     refused = list(law.out_of_range(values))
     for refusal in refused:

@@ -78,6 +78,13 @@ def test_rubber_beyond_its_limit(solved):
     assert judged.notes[2] == "rubber stretch 2.1, of 2"
 
 
+def test_rubber_beyond_the_tests_of_its_law(solved):
+    case, solution = solved(1.01, [1.2, 1.5, 1.6, np.nan])
+    judged = strain.judged(case, solution, Limits(fitted_range=(1.0, 1.5)))
+    assert [flags == {Flag.BEYOND_FIT} for flags in judged.flags] == [False, False, True, False]
+    assert judged.notes == ["", "", "rubber stretch 1.6; its law was fitted up to 1.5", ""]
+
+
 def test_without_a_strength_long_threads_are_named(solved):
     case, solution = solved([1.04, 1.06, 1.13, np.nan], 1.5)
     judged = strain.judged(case, solution, Limits())
@@ -116,6 +123,7 @@ def test_failures_name_the_worst_state(solved, study, tmp_path):
     [
         ("thread_stiffness: 315", "thread_stiffness: 315, thread_strength: 20"),
         ("c01: 0.083805", "c01: 0.083805, stretch_limit: 3"),
+        ("c01: 0.083805", "c01: 0.083805, fitted_range: [1, 1.5]"),
     ],
 )
 def test_limits_are_no_part_of_a_case(study, old, new):
@@ -141,6 +149,7 @@ def test_limits_of_a_study(study):
     ("old", "new", "said"),
     [
         ("c01: 0.083805", "c01: 0.083805, stretch_limit: 1", "stretch_limit = 1"),
+        ("c01: 0.083805", "c01: 0.083805, fitted_range: [0.5, 0.9]", "fitted_range = [0.5, 0.9]"),
         ("lead: 144", "lead: 144, thread_strength: 0", "thread_strength = 0"),
         ("lead: 144", "lead: 144, thread_diameter: -1", "thread_diameter = -1"),
         # 59.0 mm of circumference times cosine in the inner layer, for 60 threads
