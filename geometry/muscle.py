@@ -11,10 +11,11 @@ A straight rubber tube between two caps, reinforced by layers of helical threads
     )
 """
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 from geometry.braid import MM, ONE, AnyBraid, Braid, Layer, LayeredBraid, UnbuildableMuscle
+from geometry.plain import plain
 from geometry.refusal import build, is_number
 
 __all__ = ["MM", "ONE", "AnyBraid", "Braid", "LayeredBraid", "Muscle", "UnbuildableMuscle"]
@@ -80,7 +81,7 @@ class Muscle:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values that JSON can hold; ``from_dict`` reads them back."""
-        values = asdict(self)
+        values = plain(self)
         if self.braid is not None:
             lists = {k: list(v) for k, v in values["braid"].items() if isinstance(v, tuple)}
             values["braid"] |= lists

@@ -7,12 +7,13 @@ it, so that scenes which differ only there share the solve.
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any
 
 from geometry.braid import Kind, LayeredBraid
 from geometry.muscle import Muscle
+from geometry.plain import plain
 from geometry.refusal import build
 from solver import rubber
 from solver.effects import (
@@ -145,13 +146,13 @@ class Case:
                 del values["rubber"]["kappa"]
         if "thread" in parts and braided and self.effects.stretch is Stretch.ELASTIC:
             assert self.thread is not None  # see __post_init__
-            values["thread"] = asdict(self.thread)
+            values["thread"] = plain(self.thread)
         if "numerics" in parts:
             read = self._read()
-            values["numerics"] = {name: asdict(getattr(self.numerics, name)) for name in read}
+            values["numerics"] = {name: plain(getattr(self.numerics, name)) for name in read}
         if self.remembers:
             assert self.memory is not None
-            values["memory"] = asdict(self.memory)
+            values["memory"] = plain(self.memory)
         if self.fields_at:
             values["fields_at"] = self.fields_at
         return values
@@ -194,7 +195,7 @@ class Case:
 
     def canonical(self) -> str:
         """Canonical JSON: sorted keys, shortest decimals, 20 for 20.0."""
-        return json.dumps(_canonical(self.as_dict()), sort_keys=True, allow_nan=False)
+        return canonical(self.as_dict())
 
     @cached_property
     def key(self) -> str:
@@ -203,6 +204,10 @@ class Case:
 
     def mesh_spec(self) -> str | None:
         """What shapes the mesh, as canonical JSON for ``python -m geometry``; None without one."""
+        return self._mesh_spec
+
+    @cached_property
+    def _mesh_spec(self) -> str | None:
         kind = MODELS[self.model].mesh
         if kind is None:
             return None
@@ -212,7 +217,7 @@ class Case:
             muscle["length"] = 1.0  # shapes no cell
         elif isinstance(self.muscle.braid, LayeredBraid):
             lines = self.muscle.braid.embedded_diameters  # all of it that shapes a section
-            muscle["braid"] = asdict(LayeredBraid.of_lines(lines)) if lines else None
+            muscle["braid"] = plain(LayeredBraid.of_lines(lines)) if lines else None
         elif muscle["braid"] is not None:
             # lead and thread number shape no section: muscles that differ there share a mesh
             muscle["braid"] = {**muscle["braid"], "lead": 1.0, "threads": 1}
@@ -226,7 +231,7 @@ class Case:
                 self.numerics.spread.radius_of(self.thread) if self.thread is not None else None
             )
             spec["thread_lines"] = self.thread is not None and self.effects.layers is Layers.WIRE
-        return json.dumps(_canonical(spec), sort_keys=True, allow_nan=False)
+        return canonical(spec)
 
     @classmethod
     def from_dict(cls, values: object) -> "Case":
@@ -273,6 +278,11 @@ def _check_sleeves(muscle: Muscle, effects: Effects) -> None:
     if effects.wall is Wall.ONE_RADIUS:
         allowed = "integrated, where layers have radii or angles of their own"
         raise UnsolvableCase("wall", effects.wall, allowed)
+
+
+def canonical(values: dict[str, Any]) -> str:
+    """Plain values as JSON: sorted keys, shortest decimals, 20 for 20.0."""
+    return json.dumps(_canonical(values), sort_keys=True, allow_nan=False)
 
 
 def digest(text: str) -> str:
@@ -325,10 +335,10 @@ def _numerics(values: object) -> Numerics:
 
 def _canonical(value: Any) -> Any:
     """The same plain value with whole numbers as integers, so that 20, 20.0 and 2e1 are one."""
-    if isinstance(value, Mapping):
+    if isinstance(value, float):
+        return int(value) if value.is_integer() else value
+    if isinstance(value, dict):
         return {key: _canonical(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
         return [_canonical(entry) for entry in value]
-    if isinstance(value, float) and value.is_integer():
-        return int(value)
     return value

@@ -6,10 +6,11 @@ Newton's method does.
 """
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum, StrEnum
 from typing import Any
 
+from geometry.plain import plain
 from geometry.refusal import build, is_number
 from solver.history import History, Valve
 from solver.refusal import UnsolvableCase
@@ -194,7 +195,7 @@ class LoadPath:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values; of a path out of time without a history."""
-        values = asdict(self)
+        values = plain(self)
         if self.history is None:
             del values["history"]
         return values

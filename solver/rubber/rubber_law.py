@@ -10,13 +10,15 @@ import inspect
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.plain import plain
 from geometry.refusal import is_number
 from solver.material import MPA
 from solver.refusal import UnsolvableCase
@@ -141,6 +143,7 @@ class RubberLaw(ABC):
         return [Path(inspect.getfile(cls)).parent, BY_INVARIANTS]
 
     @classmethod
+    @cache
     def has_frame(cls, name: str) -> bool:
         """Whether there is an include of that frame."""
         own, shared = cls.includes()
@@ -163,7 +166,7 @@ class RubberLaw(ABC):
     def as_dict(self) -> dict[str, Any]:
         """Plain values; without the name of the law if that is understood."""
         named = {} if self.unnamed else {"law": self.law()}
-        return named | asdict(self)
+        return named | plain(self)
 
     @property
     @abstractmethod

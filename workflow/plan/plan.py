@@ -14,7 +14,7 @@ from pathlib import Path
 from geometry import section
 from geometry.grading import UnbuildableMesh
 from geometry.muscle import Muscle
-from solver.case import Case, digest
+from solver.case import Case, canonical, digest
 from solver.load_path import ZERO_FORCE, LoadPath, PathKind
 from solver.models import MODELS
 from workflow.plan import model_choice
@@ -137,8 +137,11 @@ class _Wish:
     def planned(self) -> PlannedCase:
         path = self.case.path
         stops = path.stops if path.by_way else tuple(sorted(self.stops))
-        path = replace(path, stops=stops, zero_force=self.zero_force)
-        case = replace(self.case, path=path, fields_at=tuple(sorted(self.fields_at)))
+        fields_at = tuple(sorted(self.fields_at))
+        case = self.case  # most often that of its only scene
+        if (stops, self.zero_force, fields_at) != (path.stops, path.zero_force, case.fields_at):
+            path = replace(path, stops=stops, zero_force=self.zero_force)
+            case = replace(case, path=path, fields_at=fields_at)
         return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)))
 
 
@@ -342,6 +345,8 @@ def _check_mesh(study: Study, place: Place, variant: Variant) -> None:
 
 def _identity(case: Case) -> str:
     """What a case has in common with all that can be merged with it."""
-    stops = case.path.stops if case.path.by_way else (0.0,)
-    path = replace(case.path, stops=stops, zero_force=False)
-    return replace(case, path=path, fields_at=()).canonical()
+    values = case.as_dict()
+    values.pop("fields_at", None)
+    stops = case.path.stops if case.path.by_way else ()
+    values["path"] |= {"stops": stops, "zero_force": False}
+    return canonical(values)

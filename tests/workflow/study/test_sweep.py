@@ -246,7 +246,7 @@ def test_an_unusual_value_is_said_once(planned):
 
 
 def test_ten_thousand_muscles_are_planned_in_linear_time(tmp_path):
-    """A case takes 0.6 ms of processor time, on a busy machine more."""
+    """A case takes less than 1 ms of processor time, on a busy machine more."""
 
     def seconds(count):
         grid = f"inner_diameter: {{from: 10, to: {9 + count / 100:g}, step: 1}}"
