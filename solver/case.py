@@ -14,7 +14,7 @@ from typing import Any
 from geometry.braid import Kind, LayeredBraid
 from geometry.muscle import Muscle
 from geometry.plain import plain
-from geometry.refusal import build
+from geometry.refusal import build, is_number
 from solver import rubber
 from solver.effects import (
     Effects,
@@ -41,6 +41,8 @@ from solver.rubber.rubber_law import RubberLaw
 
 INCOMPRESSIBLE = {"kappa": 1e300}
 ANY_THREAD = {"stiffness": 1}
+MOST_FREQUENCIES = 1000
+DYNAMIC = "dynamic_stiffness"  # the quantity of models that answer vibrations
 ANY_MUSCLE = {"wall_thickness": 1e9, "length": 1.0}
 
 
@@ -51,7 +53,8 @@ class Case:
     Attributes
     ----------
     fields_at : stops of the path at which fields (deformed shape, stress) are recorded too
-    memory : of the rubber; only read where it can matter, in time
+    memory : of the rubber; only read where it can matter, in time or in a vibration
+    frequencies : of small vibrations, whose stiffness is found at every state of the path [Hz]
     numerics : what goes with the size of the muscle and was left out is filled in
 
     Raises
@@ -69,6 +72,7 @@ class Case:
     numerics: Numerics = field(default_factory=Numerics)
     fields_at: tuple[float, ...] = ()
     memory: Memory | None = None
+    frequencies: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "numerics", self.numerics.of(self.muscle))
@@ -103,6 +107,8 @@ class Case:
             raise UnsolvableCase("fields_at", self.fields_at, f"none: {self.model} has no fields")
         if self.path.history is not None:
             self._check_history()
+        if self.frequencies != ():
+            self._check_frequencies()
 
     def _check_history(self) -> None:
         """Refuse what no model can have in time, or this one cannot."""
@@ -118,11 +124,39 @@ class Case:
             allowed = f"pressures > 0 at a held contraction: without, {self.model} has no wall"
             raise UnsolvableCase("stops", min(path.stops), allowed)
 
+    def _check_frequencies(self) -> None:
+        """Refuse vibrations that cannot be, or of a model that has none."""
+        model, values = MODELS[self.model], self.frequencies
+        able = ", ".join(name for name in MODELS if DYNAMIC in MODELS[name].quantities)
+        if DYNAMIC not in model.quantities:
+            raise UnsolvableCase("frequencies", values, f"none with {self.model}; with {able}")
+        if not isinstance(values, tuple) or len(values) > MOST_FREQUENCIES:
+            allowed = f"a list of at most {MOST_FREQUENCIES} numbers (Hz)"
+            raise UnsolvableCase("frequencies", values, allowed)
+        for value in values:
+            if not (is_number(value) and value > 0):
+                raise UnsolvableCase("frequencies", value, "finite numbers > 0 (Hz)")
+        if self.memory is None:
+            raise UnsolvableCase("frequencies", values, "none without a memory of the rubber")
+        if self.path.history is not None:
+            raise UnsolvableCase("frequencies", values, "none on a path in time")
+        if self.effects.twist is Twist.FREE:
+            allowed = "held with a memory, whose branches have no shear"
+            raise UnsolvableCase("twist", self.effects.twist, allowed)
+        if self.effects.stretch is Stretch.RIGID or self.effects.rubber is Rubber.NONE:
+            allowed = "none of a rigid net or of no rubber"
+            raise UnsolvableCase("frequencies", values, allowed)
+
     @property
     def remembers(self) -> bool:
-        """Whether the memory of the rubber matters."""
+        """Whether the memory of the rubber matters on the path."""
         has = self.memory is not None and self.effects.rubber is Rubber.ELASTIC
         return has and self.path.history is not None
+
+    @property
+    def vibrates(self) -> bool:
+        """Whether it matters for vibrations at the states of the path."""
+        return self.frequencies != ()
 
     def as_dict(self) -> dict[str, Any]:
         """What the model reads, as plain values; ``from_dict`` reads it back."""
@@ -150,9 +184,11 @@ class Case:
         if "numerics" in parts:
             read = self._read()
             values["numerics"] = {name: plain(getattr(self.numerics, name)) for name in read}
-        if self.remembers:
+        if self.remembers or self.vibrates:
             assert self.memory is not None
             values["memory"] = plain(self.memory)
+        if self.vibrates:
+            values["frequencies"] = self.frequencies
         if self.fields_at:
             values["fields_at"] = self.fields_at
         return values
@@ -160,7 +196,7 @@ class Case:
     @property
     def units(self) -> dict[str, str]:
         """Of the numbers that are of no part."""
-        return {"fields_at": self.path.units["stops"]}
+        return {"fields_at": self.path.units["stops"], "frequencies": "Hz"}
 
     @property
     def active_effects(self) -> list[str]:
@@ -247,6 +283,9 @@ class Case:
         }
         if "memory" in given:
             parts["memory"] = build(Memory, given["memory"], UnsolvableCase, "memory")
+        if "frequencies" in given:
+            found = given["frequencies"]
+            parts["frequencies"] = tuple(found) if isinstance(found, list) else found
         parts["rubber"] = rubber.from_dict(given.get("rubber"))
         if muscle.braid is None:
             parts["thread"] = None

@@ -19,6 +19,8 @@ Layout, version 5
              Cell: corners (4 tetrahedra, 6) = R, T, Z, r, t, z [mm, rad], stress (.., 6) = Cauchy
              stress of the rubber rr, tt, zz, rt, tz, rz [MPa], threads (.., 4) = thread stretch
              of both layers [1] and their densities [mm/mm^3].
+             Of every state where frequencies are asked for: dynamic_stiffness (frequency, 3) =
+             frequency [Hz], storage and loss stiffness [N/mm].
 
 A record is complete or absent (geometry/files.py). It holds no time and no date, so that the same
 case solved again gives the same bytes.
@@ -80,6 +82,7 @@ VARIABLES = {
     "iterations": ("1", "Newton iterations since the state before"),
     "cutbacks": ("1", "steps given up since the state before"),
 }
+DYNAMIC = "dynamic_stiffness"  # name among the fields of a state
 IN_TIME = {  # beside them, of a path in time
     "time": ("s", "time since the first stop"),
     "work": ("N*mm", "work done on the muscle by its force and pressure since the first stop"),

@@ -11,6 +11,7 @@ Layout, version 3
              the square of the number of muscles that have stops of their own they would be more.
              ``workflow.data.open`` makes these groups of any muscle
 /cycle, /transient   curves in time, a group for each scene (workflow/data/in_time.py)
+/dynamic_stiffness   dim row: answers to small vibrations (workflow/data/vibration.py)
 /effects     dims regime, path, effect: what leaving out an effect changes and costs, as measured by
              the analysis of effects (workflow/plan/effect_costs.py); only in results/dataset.nc
 /reference   dim point: the force maps that are of muscles of the study
@@ -31,7 +32,7 @@ import xarray as xr
 
 import workflow
 from geometry.files import atomic_write
-from workflow.data import in_time, labelled, reference
+from workflow.data import in_time, labelled, reference, vibration
 from workflow.data.records import Curve
 from workflow.data.reference import ForceMap
 from workflow.data.states import CONTROLS, OF_CURVE, OF_MUSCLE, OF_STATE, Table, attributes
@@ -63,7 +64,7 @@ def build(
         groups["reference"] = _reference(reference.load(sorted(set().union(*named))))
     if effects:
         groups["effects"] = measured_effects()
-    groups |= in_time.groups(curves)
+    groups |= in_time.groups(curves) | vibration.group(curves)
     if len(table.curves):
         groups |= {
             "muscles": _rows(table.muscles.rename_axis("muscle").reset_index(), "muscle", MUSCLES),

@@ -60,9 +60,9 @@ def write(path: Path, state: int, output: Path) -> None:
         solution = record.read(path)[1]
     except record.NoRecord as error:
         raise StudyError(str(error)) from None
-    fields = solution.fields.get(state)
+    fields = {k: v for k, v in solution.fields.get(state, {}).items() if k != record.DYNAMIC}
     with atomic_write(output) as beside:
-        if fields is None:
+        if not fields:
             beside.touch()
             return
         points, cells, data = _parts(fields)

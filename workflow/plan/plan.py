@@ -123,6 +123,7 @@ class _Wish:
     case: Case
     stops: set[float] = field(default_factory=set)
     fields_at: set[float] = field(default_factory=set)
+    frequencies: set[float] = field(default_factory=set)
     zero_force: bool = False
     places: set[Place] = field(default_factory=set)
     scenes: set[str] = field(default_factory=set)
@@ -130,6 +131,7 @@ class _Wish:
     def add(self, scene: str, place: Place, case: Case) -> None:
         self.stops.update(case.path.stops)
         self.fields_at.update(case.fields_at)
+        self.frequencies.update(case.frequencies)
         self.zero_force |= case.path.zero_force
         self.places.add(place)
         self.scenes.add(scene)
@@ -137,11 +139,11 @@ class _Wish:
     def planned(self) -> PlannedCase:
         path = self.case.path
         stops = path.stops if path.by_way else tuple(sorted(self.stops))
-        fields_at = tuple(sorted(self.fields_at))
         case = self.case  # most often that of its only scene
-        if (stops, self.zero_force, fields_at) != (path.stops, path.zero_force, case.fields_at):
-            path = replace(path, stops=stops, zero_force=self.zero_force)
-            case = replace(case, path=path, fields_at=fields_at)
+        found = {name: tuple(sorted(getattr(self, name))) for name in ("fields_at", "frequencies")}
+        path = replace(path, stops=stops, zero_force=self.zero_force)
+        if (path, *found.values()) != (case.path, case.fields_at, case.frequencies):
+            case = replace(case, path=path, **found)
         return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)))
 
 
@@ -292,7 +294,8 @@ def _case(
             "effects": effects,
             "numerics": variant.numerics,
             "fields_at": _fields_at(scene, place, path),
-            "memory": muscle.memory if scene.in_time else None,
+            "memory": muscle.memory,
+            "frequencies": scene.frequency or (),
         },
         {"model": "models", "stops": SWEPT_KEY[scene.kind]},
     )
@@ -347,6 +350,8 @@ def _identity(case: Case) -> str:
     """What a case has in common with all that can be merged with it."""
     values = case.as_dict()
     values.pop("fields_at", None)
+    if values.pop("frequencies", None):
+        del values["memory"]
     stops = case.path.stops if case.path.by_way else ()
     values["path"] |= {"stops": stops, "zero_force": False}
     return canonical(values)

@@ -9,6 +9,7 @@ from typing import Any
 from geometry.muscle import AnyBraid, Muscle
 from geometry.refusal import Refusal
 from solver import net
+from solver.case import DYNAMIC
 from solver.load_path import ZERO_FORCE, LoadPath
 from workflow.study import figure_needs, in_time, units
 from workflow.study.contents import StudiedMuscle, Study
@@ -81,6 +82,7 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
     if asked.path == "isobaric" and of_sheet and of_sheet[-1] <= 0:
         allowed = "contractions up to about where it pulls no more, for a sheet"
         yield source.refuse((*keys, "contraction"), _as_written(of_sheet), allowed)
+    yield from _frequency(study, keys, asked)
     for quantity in asked.quantities:
         allowed = _quantity(asked, quantity)
         if allowed:
@@ -89,10 +91,28 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
         yield from _values(source, keys, asked)
 
 
+def _frequency(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:
+    """Frequencies where vibrations are asked for, of rubbers with a memory."""
+    source, wanted = study.source, DYNAMIC in asked.quantities
+    if wanted and asked.frequency is None:
+        yield source.refuse((*keys, "frequency"), None, f"this key must be given with {DYNAMIC}")
+    if not wanted and asked.frequency is not None:
+        allowed = f"this key is only used with the quantity {DYNAMIC}"
+        yield source.refuse((*keys, "frequency"), list(asked.frequency), allowed)
+    low = [value for value in asked.frequency or () if value <= 0]
+    if low:
+        yield source.refuse((*keys, "frequency"), low[0], "frequencies > 0 (Hz)")
+    for name in asked.muscles if wanted else ():
+        made = study.muscles.get(name)
+        if made is not None and made.memory is None:
+            allowed = f"this quantity of rubbers with a memory; {made.material} of {name} has none"
+            yield source.refuse((*keys, "quantities"), DYNAMIC, allowed)
+
+
 def _in_time(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
     """A scene in time, whose quantities are those of every state."""
     for quantity in asked.quantities:
-        if quantity in ZERO_FORCE or quantity in ("stress", "deformed_shape"):
+        if quantity in ZERO_FORCE or quantity in ("stress", "deformed_shape", DYNAMIC):
             allowed = f"this quantity only out of time, not on a {asked.path} path"
             yield source.refuse((*keys, "quantities"), quantity, allowed)
     high = [p for p in asked.pressure or () if p > HIGHEST]

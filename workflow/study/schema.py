@@ -51,6 +51,7 @@ ASKED = (  # those from stress on are solved for or written only when asked for
     "twist",
     "stress",
     "deformed_shape",
+    "dynamic_stiffness",
 )
 FITTED = tuple(m for m in MODELS if MODELS[m].mesh and not MODELS[m].only_for)  # not too dear
 SHEET = "sheet"  # the quantity that asks for the data sheet of a muscle
@@ -456,6 +457,7 @@ class Scene(Entry):
     models: _some_of(*MODELS) | None = None
     variants: Names = ("default",)
     effects: dict[_one_of(*EFFECTS), _one_of("on", "off")] = {}
+    frequency: Values | None = None  # Hz
     tolerance: Annotated[Number, Field(gt=0, lt=1)] | None = None  # share of the largest value
     quantities: _some_of(*QUANTITIES) = ()
 

@@ -18,7 +18,8 @@ from solver.judge import judged
 from solver.load_path import Control, Waypoint
 from solver.models.cylinder.mechanics import REACH, Cylinder, State
 from solver.models.cylinder.observe import derivatives, observed, slopes, volume
-from solver.record import Solution, unreached
+from solver.models.cylinder.vibration import dynamic_stiffness
+from solver.record import DYNAMIC, Solution, unreached
 from solver.zero_force import Finder, Point, Search
 
 Array = NDArray[np.float64]
@@ -37,9 +38,10 @@ NAMES = {  # of controls, as solver/path/newton.idp writes them
 def solve(case: Case) -> Solution:
     """The curve of a case."""
     cylinder = Cylinder(case)
-    states, reason, searched = _curve(cylinder)
-    cuts = continuity.snaps(case, (states, {}), lambda finer: (_curve(Cylinder(finer))[0], {}))
-    return judged(
+    fields: dict[int, dict[str, Array]] = {}
+    states, reason, searched = _curve(cylinder, fields)
+    cuts = continuity.snaps(case, (states, fields), lambda finer: _solved(Cylinder(finer)))
+    solution = judged(
         case,
         states,
         reason=reason,
@@ -47,16 +49,23 @@ def solve(case: Case) -> Solution:
         lost=continuity.behind(case, cuts),
         unknowns=cylinder.unknowns,
     )
+    return replace(solution, fields=fields)
+
+
+def _solved(cylinder: Cylinder) -> tuple[dict[str, Array], dict[int, dict[str, Array]]]:
+    """States and fields."""
+    fields: dict[int, dict[str, Array]] = {}
+    return _curve(cylinder, fields)[0], fields
 
 
 def _curve(
-    cylinder: Cylinder,
+    cylinder: Cylinder, fields: dict[int, dict[str, Array]]
 ) -> tuple[dict[str, Array], str, tuple[float, float] | None]:
     """States, why the last way ended early, and where zero force was looked for."""
     path = cylinder.case.path
     states = unreached(path.states)
     for way in path.ways(rubber=cylinder.case.effects.rubber is not Rubber.NONE):
-        reason, searched = _follow(cylinder, way, states)
+        reason, searched = _follow(cylinder, way, states, fields)
         if np.isfinite(states["force"][: len(path.stops)]).all():
             break
     return states, reason, searched
@@ -84,7 +93,10 @@ def scale(cylinder: Cylinder, kind: Control) -> float:
 
 
 def _follow(
-    cylinder: Cylinder, way: list[Waypoint], states: dict[str, Array]
+    cylinder: Cylinder,
+    way: list[Waypoint],
+    states: dict[str, Array],
+    fields: dict[int, dict[str, Array]],
 ) -> tuple[str, tuple[float, float] | None]:
     """Record the stops of a way and the state of zero force.
 
@@ -104,6 +116,8 @@ def _follow(
             break
         if point.stop is not None:
             _record(cylinder, states, point.stop, at)
+            if case.vibrates:
+                fields[point.stop] = {DYNAMIC: dynamic_stiffness(cylinder, at)}
     if curve is None or not curve.points:
         return reason, None
     finder = Finder(curve.search, curve.points, curve.walk, curve.polish)

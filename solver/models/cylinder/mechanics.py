@@ -136,6 +136,10 @@ class Cylinder:
         """Hoop stretch of the points of the wall."""
         return self._hoop(self.radii, r, lz)
 
+    def by_shape(self, r: float, lz: float, *, threads: bool) -> tuple[float, float]:
+        """Derivatives of the energy by r and lz, without twist."""
+        return self._forces(r, lz, 0.0, threads=threads)[:2]
+
     def _hoop(self, radii: Array, r: float, lz: float) -> Array:
         """Hoop stretch at reference radii."""
         return np.asarray(np.sqrt(r**2 + (radii**2 - self.inner**2) / lz) / radii)

@@ -27,6 +27,7 @@ MODEL = Model(
         "volume",
         "stiffness",
         "twist",
+        "dynamic_stiffness",
     ),
     in_time=True,
     solve=solve,

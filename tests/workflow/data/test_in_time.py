@@ -66,6 +66,20 @@ scenes:
     pressure: [0.3]
     contraction: [0, 0.2]
     models: [cylinder]
+  hum:
+    path: isobaric
+    muscles: [one]
+    pressure: [0.2]
+    contraction: [0, 0.1]
+    models: [cylinder]
+    quantities: [dynamic_stiffness]
+    frequency: [1, 10]
+  still: # the same curve
+    path: isobaric
+    muscles: [one]
+    pressure: [0.2]
+    contraction: [0.05]
+    models: [cylinder]
 """
 
 
@@ -143,7 +157,20 @@ def test_groups_have_a_dimension_time(solved):
     assert set(loops.cycle.values) == {1}
     assert loops.period == 4
     assert set(tree["cycle/own"].to_dataset().cycle.values) == {1, 2}
-    assert len(tree["states"].to_dataset().row) == 2  # those out of time
+    assert len(tree["states"].to_dataset().row) == 2 + 3  # those out of time
+
+
+def test_vibrations_are_a_table_and_share_their_curve(solved):
+    plan, curves = solved
+    (hum,), (still,) = plan.scenes["hum"].values(), plan.scenes["still"].values()
+    assert hum == still
+    tree = dataset.build(curves, plan.study.muscles)
+    rows = tree["dynamic_stiffness"].to_dataset()
+    assert list(rows.frequency.values) == [1, 10] * 3
+    np.testing.assert_allclose(rows.contraction[::2], [0, 0.05, 0.1], atol=1e-12)
+    assert (rows.storage > 5).all()
+    assert (rows.loss > 0).all()
+    assert rows.loss.attrs["units"] == "N/mm"
 
 
 def test_groups_are_written_and_read(solved, tmp_path):
@@ -191,6 +218,14 @@ CYCLE = "cycle: {held: pressure, period: [4, 40], cycles: 1, samples: 8}\n"
         ("conductance: 1e7", "conductance: 0", "1 dm^3/(s bar) is 1e7"),
         ("models: [cylinder]\n  own", "models: [geometric]\n  own", "geometric knows no time"),
         ("path: isobaric", f"path: isobaric\n    {CYCLE}", "not used on an isobaric path"),
+        ("    frequency: [1, 10]\n", "", "frequency is missing"),
+        ("frequency: [1, 10]", "frequency: [-1, 10]", "frequencies > 0"),
+        ("    quantities: [dynamic_stiffness]\n", "", "only used with the quantity"),
+        (
+            "    memory: {per_decade: 0.06, from: 1e-2, to: 10, reference_time: 60}\n",
+            "",
+            "nbr of one has none",
+        ),
         ("samples: 8}", "samples: 8}\n    quantities: [free_contraction]", "only out of time"),
     ],
     ids=str,

@@ -1,0 +1,115 @@
+"""Stiffness in small vibrations: checked numbers, a run in time, what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solver import record
+from solver.case import Case
+from solver.history import History, Wave, sampled
+from solver.load_path import LoadPath
+from solver.memory import Memory
+from solver.refusal import UnsolvableCase
+
+FLAT = Memory.flat(0.06, 1e-3, 1e3)
+FREQUENCIES = (0.1, 1.0, 10.0)
+AT_10 = LoadPath(kind="isobaric", held=0.3, stops=(0.1,))
+
+
+def answers(solution):
+    rows = solution.fields[0][record.DYNAMIC]
+    return rows[:, 1] + 1j * rows[:, 2]
+
+
+def test_checked_numbers(make_case, solve_case):
+    case = make_case(model="cylinder", path=AT_10, memory=FLAT, frequencies=FREQUENCIES)
+    found = answers(solve_case(case))
+    expected = [10.60006 + 0.16595j, 10.83892 + 0.16486j, 11.07638 + 0.16242j]
+    assert found.real == pytest.approx(np.real(expected), abs=6e-6)
+    assert found.imag == pytest.approx(np.imag(expected), abs=6e-6)
+
+
+def test_slow_vibrations_are_static_and_fast_ones_of_a_stiffer_rubber(make_case, solve_case, nbr):
+    case = make_case(model="cylinder", path=AT_10, memory=FLAT, frequencies=(1e-9, 1e9))
+    solution = solve_case(case)
+    slow, fast = answers(solution)
+    assert slow.real == pytest.approx(solution.states["stiffness"][0], rel=1e-6)
+    assert abs(slow.imag) < 1e-4
+    assert fast.real > 11
+    assert abs(fast.imag) < 1e-4
+
+
+def test_a_run_in_time_answers_alike(make_case, solve_case):
+    """A swing of 0.01 % with 1 Hz around 10 %."""
+    memory = Memory(shares=(0.1, 0.1), times=(0.02, 0.2))
+    case = make_case(model="cylinder", path=AT_10, memory=memory, frequencies=(1.0,))
+    (exact,) = answers(solve_case(case))
+    times, stops = sampled(Wave.SINE, 0.1, 0.1002, 1.0, 3, 40)
+    path = LoadPath(kind="isobaric", held=0.3, stops=stops, history=History(times=times))
+    states = solve_case(make_case(model="cylinder", path=path, memory=memory)).states
+    turn = np.exp(-2j * np.pi * states["time"][-40:])
+    e, f = (states[name][-40:] @ turn for name in ("contraction", "force"))
+    found = f / (-300 * e)
+    assert found.real == pytest.approx(exact.real, rel=5e-4)
+    assert found.imag == pytest.approx(exact.imag, rel=0.02)
+
+
+def test_records_keep_the_answers(make_case, solve_case, tmp_path):
+    case = make_case(model="cylinder", path=AT_10, memory=FLAT, frequencies=FREQUENCIES)
+    solution = solve_case(case)
+    record.write(tmp_path / "case.h5", case, solution)
+    again, read = record.read(tmp_path / "case.h5")
+    assert again.frequencies == FREQUENCIES
+    assert again.key == case.key
+    np.testing.assert_array_equal(answers(read), answers(solution))
+
+
+def test_constants_of_a_slow_test_are_less_stiffened(make_case, solve_case):
+    found = [
+        answers(
+            solve_case(
+                make_case(
+                    model="cylinder",
+                    path=AT_10,
+                    memory=replace(FLAT, reference_time=time),
+                    frequencies=(1.0,),
+                )
+            )
+        )[0].real
+        for time in (None, 1e3, 1.0)
+    ]
+    assert found == sorted(found, reverse=True)
+
+
+def test_no_frequencies_no_key(make_case):
+    case = make_case(model="cylinder", memory=FLAT)
+    assert "frequencies" not in case.as_dict()
+    assert "memory" not in case.as_dict()
+    asked = make_case(model="cylinder", memory=FLAT, frequencies=(1.0,))
+    assert Case.from_json(asked.canonical()).key == asked.key != case.key
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"memory": None}, "without a memory"),
+        ({"model": "solid"}, "none with solid; with cylinder"),
+        ({"frequencies": (0.0,)}, "finite numbers > 0"),
+        ({"frequencies": 1.0}, "a list of at most"),
+    ],
+)
+def test_what_is_refused(make_case, changes, said):
+    given = {"model": "cylinder", "memory": FLAT, "frequencies": (1.0,)} | changes
+    with pytest.raises(UnsolvableCase, match=said):
+        make_case(**given)
+
+
+@pytest.mark.parametrize(
+    ("effects", "said"),
+    [({"twist": "free"}, "no shear"), ({"stretch": "rigid"}, "rigid net")],
+)
+def test_effects_that_cannot_vibrate(make_case, effects, said):
+    effects = replace(make_case().effects, **effects)
+    with pytest.raises(UnsolvableCase, match=said):
+        make_case(model="cylinder", memory=FLAT, frequencies=(1.0,), effects=effects)
