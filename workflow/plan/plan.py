@@ -141,8 +141,9 @@ class _Wish:
         stops = path.stops if path.by_way else tuple(sorted(self.stops))
         case = self.case  # most often that of its only scene
         found = {name: tuple(sorted(getattr(self, name))) for name in ("fields_at", "frequencies")}
-        path = replace(path, stops=stops, zero_force=self.zero_force)
-        if (path, *found.values()) != (case.path, case.fields_at, case.frequencies):
+        known = path.stops, path.zero_force, case.fields_at, case.frequencies
+        if (stops, self.zero_force, *found.values()) != known:
+            path = replace(path, stops=stops, zero_force=self.zero_force)
             case = replace(case, path=path, **found)
         return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)))
 
