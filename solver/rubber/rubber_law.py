@@ -9,7 +9,7 @@ invariants I1 and I2 needs one include only, ``invariants.idp``; the frames of
 import inspect
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from pathlib import Path
@@ -87,6 +87,51 @@ def parameter(**known: Any) -> Any:
     return field(default=found.default, metadata=metadata)
 
 
+Values = dict[str, Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fitting:
+    """How a law is fitted to tests: it is linear in moduli, at shapes that are searched for.
+
+    Attributes
+    ----------
+    units : parameters with which each modulus is 1 and the others 0, at some shapes
+    values : the parameters, at shapes and moduli
+    starts : shapes to begin with; low and high are their bounds
+    positive : whether no modulus may be negative
+    wider : the entry of a law that allows what this one refuses; empty if there is none
+    """
+
+    units: Callable[[Sequence[float]], list[Values]]
+    values: Callable[[Sequence[float], Sequence[float]], Values]
+    starts: tuple[tuple[float, ...], ...] = ((),)
+    low: tuple[float, ...] = ()
+    high: tuple[float, ...] = ()
+    positive: bool = False
+    wider: Callable[[Values], Values] = lambda _values: {}
+
+
+def linear(names: Sequence[str], wider: Callable[[Values], Values] = lambda _values: {}) -> Fitting:
+    """How a law is fitted that is linear in some parameters, the others being 0."""
+    return Fitting(
+        units=lambda _shapes: [{own: float(own == name) for own in names} for name in names],
+        values=lambda _shapes, moduli: dict(zip(names, map(float, moduli), strict=True)),
+        wider=wider,
+    )
+
+
+def scaled(modulus: str, shape: str, starts: Sequence[float], low: float, high: float) -> Fitting:
+    """How a law is fitted that has one modulus and one shape."""
+    return Fitting(
+        units=lambda shapes: [{modulus: 1.0, shape: float(shapes[0])}],
+        values=lambda shapes, moduli: {modulus: float(moduli[0]), shape: float(shapes[0])},
+        starts=tuple((start,) for start in starts),
+        low=(low,),
+        high=(high,),
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
 class RubberLaw(ABC):
     """A rubber, nearly incompressible where a model resolves that.
@@ -136,6 +181,20 @@ class RubberLaw(ABC):
         for each in cls.parameters():
             if not each.allows(values[each.name]):
                 yield UnsolvableCase(each.name, values[each.name], each.allowed)
+
+    @classmethod
+    def fittings(cls) -> dict[str, Fitting]:
+        """How it is fitted to tests, by names that begin with its own."""
+        return {cls.law(): linear([each.name for each in cls.parameters()])}
+
+    @classmethod
+    def unchecked(cls, **values: Any) -> "RubberLaw":
+        """With parameters of no rubber too, for the trials of a fit."""
+        made = object.__new__(cls)
+        known = {each.name: each.default or 0.0 for each in cls.parameters()}
+        for name, value in (known | values).items():
+            object.__setattr__(made, name, value)
+        return made
 
     @classmethod
     def includes(cls) -> list[Path]:

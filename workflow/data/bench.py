@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from solver import net
 from workflow.data import headers, measured, reference
 from workflow.data.measured import Table
 from workflow.data.reference import CONTRACTIONS, ForceMap
@@ -22,7 +23,7 @@ from workflow.study.units import PRESSURE
 
 FURTHEST = 0.2  # contraction, as in workflow/data/deviation.py
 FEW = 5  # points of a curve
-SHORTEST, LONGEST = 0.35, 1.6  # lengths under test, as shares of the length at rest
+SHORTEST, LONGEST = 0.35, 1.25  # lengths under test, as shares of the length at rest
 LARGEST_CONTRACTION = 0.65
 NOISE = 0.015  # of the largest pressure: two set pressures this close are one
 NICE = 0.01  # MPa: what a noisy set pressure is meant to be a multiple of
@@ -30,6 +31,7 @@ SWEEP = 0.15  # of the range: values that spread so far are no setting
 SAME_LENGTH = 0.004  # two set contractions this close are one
 MOST_SET = 25  # settings of a map
 TURN = 0.05  # of the range of a curve: how far back a way goes that is another one
+LEAST, MOST = 0.02, 20.0  # measured forces by those of Eq. (1): beyond, in another unit
 GRID = 41  # contractions of the mean of several ways, at most
 SERIES = 2 * GRID  # points of a way from which on it is a time series
 LEVELS = 12  # pressures of a map that is made of sweeps of the pressure, at most
@@ -389,6 +391,15 @@ def stops(found: ForceMap, pressure: float) -> NDArray[np.float64]:
     return own[found.inside(own, pressure)]
 
 
+def _share_of_net(study: Study, name: str, found: ForceMap) -> float:
+    """Largest measured force by that of Eq. (1) at its pressure; 0 where that says nothing."""
+    muscle = study.muscles[name].muscle
+    pressure, _, force = found.points[np.argmax(found.points[:, 2])]
+    if muscle.braid is None or pressure <= 0 or force <= 0:
+        return 0.0
+    return float(force / abs(net.force(muscle, float(pressure), 0.0)))
+
+
 def understood(study: Study) -> Iterator[str]:
     """What was understood of the files of a study's calibrations, in lines."""
     for name, entry in study.calibration.items():
@@ -419,6 +430,14 @@ def _refused(study: Study, name: str) -> Iterator[StudyError]:
     except StudyError as error:
         given = f"{source.place(place)} = {shown(named)} is refused"
         yield StudyError(f"{given}\n  {error}", source.line(place) or 0, place)
+        return
+    if (share := _share_of_net(study, entry.muscle, found)) and not LEAST < share < MOST:
+        guess = "perhaps kN under N" if share < LEAST else "perhaps another unit"
+        allowed = (
+            f"forces of this muscle; its largest are {share:.2g} of what Eq. (1) pulls with there, "
+            f"{guess}"
+        )
+        yield source.refuse(place, named, allowed)
         return
     count = 0
     pressures = ", ".join(f"{p:g}" for p in found.pressures[:12])

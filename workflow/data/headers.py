@@ -44,12 +44,40 @@ FILLERS = SET | {
     *("measured", "ist", "istwert", "actual", "mean", "avg", "average", "mittelwert", "sensor"),
     *("signal", "value", "wert", "rel", "relative", "gauge", "supply", "internal", "inner", "air"),
     *("muscle", "muskel", "total", "axial", "tensile", "pulling", "pull", "blocked", "static"),
-    *("filtered", "raw", "corrected", "ratio", "nominal", "engineering", "eng", "nom", "technical"),
+    *(
+        "mess",
+        "messwert",
+        "gemessen",
+        "filtered",
+        "raw",
+        "corrected",
+        "ratio",
+        "nominal",
+        "engineering",
+        "eng",
+        "nom",
+        "technical",
+    ),
     *("in", "the", "of", "at", "under", "test", "current", "isometric", "input", "output", "abs"),
     *("test", "data", "channel", "ch", "y", "x", "z", "cell", "transducer", "working", "operating"),
 }
 REST = {"initial", "rest", "original", "unloaded", "nominal", "start", "free"}  # of a length
 SELDOM = {"strain", "suspect", "test", "extension"}  # what a unit by itself does not mean
+SCATTER = {  # of a quantity, not itself
+    *(
+        "std",
+        "stdev",
+        "sd",
+        "sem",
+        "error",
+        "err",
+        "uncertainty",
+        "deviation",
+        "variance",
+        "offset",
+    ),
+    *("tolerance", "velocity", "speed", "per", "count", "number", "id", "drop"),
+}
 TRUE = {"true", "cauchy", "wahre", "log", "logarithmic", "hencky"}
 
 
@@ -75,7 +103,7 @@ OF_MUSCLES = (
     ),
     Word(
         ("contraction", "kontraktion", "contraccion", "contrazione", "shortening", "verkuerzung"),
-        ("eps", "epsilon", "contr", "kappa", "h"),
+        ("eps", "epsilon", "contr", "kappa", "h", "e", "k"),
         {RATIO: "contraction", LENGTH: "stroke"},
     ),
     Word(
@@ -87,7 +115,7 @@ OF_MUSCLES = (
             "weg",
             "verschiebung",
             "strokelength",
-            "course",
+            "position",
         ),
         ("s", "disp", "dl", "deltal", "dx", "deltall0", "dll0", "deltall", "dll"),
         {LENGTH: "stroke", RATIO: "contraction"},
@@ -161,6 +189,8 @@ def plain(text: str) -> str:
 def unit_of(text: str) -> str:
     """The key of a unit in ``UNITS``, or ``ABSOLUTE``; empty if it is none."""
     key = re.sub(r"[\s^*]", "", plain(text).lower()).strip("[]{}<>") or "?"
+    if key.startswith("(") and key.endswith(")") and len(key) > 2:
+        key = key[1:-1]
     if key in DIMENSION:
         return key
     for ends, found in ((GAUGE, ""), (NOT_GAUGE, ABSOLUTE)):
@@ -183,19 +213,13 @@ def read(text: str, words: tuple[Word, ...]) -> Header:
             unknown = bracket.strip()
             rest = rest.replace(f"[{bracket}]", " ")
     tokens = _tokens(rest)
-    if not unit and tokens:
-        for count in (1, 2):
-            last = "/".join(tokens[-count:])
-            if (
-                len(tokens) >= count
-                and unit_of(last)
-                and (len(tokens) > count or len(last) > 1 or last in "N%")
-            ):
-                unit, tokens = last, tokens[:-count]
-                break
+    if not unit:
+        unit, tokens = _unit_among(tokens)
     key = unit_of(unit)
     dimension = PRESSURE if key == ABSOLUTE else DIMENSION.get(key, "")
     lower = [token.lower() for token in tokens]
+    if not SCATTER.isdisjoint(lower):
+        return Header(text=text)
     quantity, found = _quantity(lower, dimension, words)
     if not quantity and unit and not lower:  # a unit and nothing else
         able = {q for w in words for d, q in w.quantities.items() if d == dimension} - SELDOM
@@ -220,6 +244,18 @@ def read(text: str, words: tuple[Word, ...]) -> Header:
         or (quantity == "pressure" and not NOT_GAUGE_WORDS.isdisjoint(lower)),
         unknown="" if unit else unknown,
     )
+
+
+def _unit_among(tokens: list[str]) -> tuple[str, list[str]]:
+    """A unit that stands among the words of a header, mostly at the end, and the other words."""
+    for last in range(len(tokens), 0, -1):
+        for count in (1, 2):
+            part = "/".join(tokens[max(last - count, 0) : last])
+            at_end = last == len(tokens) > 1
+            known = unit_of(part) and (len(part) > 1 or at_end or part in "N%")
+            if known and last - count >= (len(tokens) > 1) and part != "in" * (last < len(tokens)):
+                return part, tokens[: last - count] + tokens[last:]
+    return "", tokens
 
 
 def _tokens(text: str) -> list[str]:

@@ -1,13 +1,13 @@
 """A law of rubber fitted to tests: least squares of nominal stress, and whether it is stable.
 
 All laws are linear in their moduli. Powers and limits, which are not, are searched for; for each
-trial of these the moduli follow from linear least squares, those of Ogden's law with mu alpha >= 0
-in every term, as with other signs a law is of no rubber outside of its tests.
+trial of these the moduli follow from linear least squares, for some laws with none below 0. What
+is linear in a law, and where a search begins, the law says itself (solver/rubber).
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,16 +15,16 @@ from scipy.optimize import least_squares, nnls
 
 from solver import rubber
 from solver.refusal import UnsolvableCase
-from solver.rubber.rubber_law import RubberLaw
+from solver.rubber import LAWS
+from solver.rubber.rubber_law import Fitting, RubberLaw, Values
 from workflow.data.rubber_tests import KINDS, RubberTest, squares, stress
 from workflow.study.errors import StudyError, choices
 
 Array = NDArray[np.float64]
-POWERS = (-6.0, -2.0, -0.5, 0.7, 1.5, 2.5, 5.0, 9.0)  # of Ogden's terms, to start from
-BEST = 8  # starts that are followed to their end
-LEAST_POWER, LARGEST_POWER = 1e-3, 20.0
-LEAST_MODULUS = 1e-10  # MPa, of a term of Ogden's law
+BEST = 5  # starts that are followed to their end
+LEAST_MODULUS = 1e-10  # MPa, of a term that may not be negative
 UNSTABLE = 1e-6  # of a determinant: how far below 0 is below rounding
+STIFF = 1e9  # MPa: any rubber is nearly incompressible by it
 DIGITS = 6  # of what is written
 CHECKED = 200  # stretches at which stability is looked at
 STEP = 1e-5  # of logarithms of stretches, in differences
@@ -32,22 +32,17 @@ STEP = 1e-5  # of logarithms of stretches, in differences
 
 @dataclass(frozen=True)
 class Form:
-    """How a law is fitted.
+    """A law and how it is fitted."""
 
-    Attributes
-    ----------
-    columns : stress by every modulus, at shapes and a test
-    values : the parameters of the law, by shapes and moduli
-    starts : shapes to begin with; bounds of them
-    """
+    law: type[RubberLaw]
+    fitting: Fitting
 
-    law: str
-    columns: Callable[[Sequence[float], RubberTest], Array]
-    values: Callable[[Sequence[float], Array], dict[str, object]]
-    starts: tuple[tuple[float, ...], ...] = ((),)
-    low: tuple[float, ...] = ()
-    high: tuple[float, ...] = ()
-    positive: bool = False
+    def columns(self, shapes: Sequence[float], kind: str, stretch: Array) -> Array:
+        """Stress by every modulus, at some shapes."""
+        with np.errstate(all="ignore"):
+            units = self.fitting.units(shapes)
+            found = [stress(self.law.unchecked(**unit), kind, stretch) for unit in units]
+        return np.array(found).T
 
 
 @dataclass(frozen=True)
@@ -85,29 +80,18 @@ class Fit:
 
     def stress(self, kind: str, stretch: Array) -> Array:
         """Nominal stress in a test [MPa]."""
-        columns = self.form.columns(self.shapes, RubberTest(kind, stretch, stretch))
+        columns = self.form.columns(self.shapes, kind, stretch)
         return np.asarray(columns @ self.moduli)
 
 
+@cache
 def forms() -> dict[str, Form]:
     """Laws that can be fitted, by name."""
-    found = {name: _linear(name, names) for name, names in LINEAR.items()}
-    found |= {f"ogden{n}": _ogden(n) for n in range(1, 5)}
-    limits = tuple((x,) for x in (3.0, 10.0, 30.0, 100.0, 300.0))
-    found["gent"] = _scaled("gent", "jm", limits, (1e-2,), (1e6,))
-    ends = tuple((x,) for x in (1.2, 2.0, 4.0, 8.0))
-    found["arruda_boyce"] = _scaled("arruda_boyce", "lambda_m", ends, (1.01,), (100.0,))
-    return found
-
-
-LINEAR = {
-    "neo_hooke": ("c10",),
-    "mooney_rivlin": ("c10", "c01"),
-    "yeoh": ("c1", "c2", "c3"),
-    "rivlin2": ("c10", "c01", "c20", "c11", "c02"),
-    "rivlin3": ("c10", "c01", "c20", "c11", "c02", "c30", "c21", "c12", "c03"),
-}
-AS_RIVLIN = {"c1": "c10", "c2": "c20", "c3": "c30"}  # of Yeoh
+    return {
+        name: Form(law, fitting)
+        for law in LAWS.values()
+        for name, fitting in law.fittings().items()
+    }
 
 
 def fit(law: str, tests: Sequence[RubberTest], largest: float = np.inf) -> Fit:
@@ -125,18 +109,19 @@ def fit(law: str, tests: Sequence[RubberTest], largest: float = np.inf) -> Fit:
     used = [_up_to(test, largest) for test in tests]
     used = [test for test in used if test.stretch.size]
     count = sum(test.stretch.size for test in used)
-    size = len(form.low) + form.columns(form.starts[0], RubberTest("uniaxial", ONE, ONE)).shape[1]
+    start = form.fitting.starts[0]
+    size = len(start) + len(form.fitting.units(start))
     if count <= size:
         raise StudyError(f"{law} has {size} parameters, and there are {count} points")
     shapes, moduli = _solved(form, used)
-    values = form.values(shapes, moduli)
-    residuals = {test.kind: form.columns(shapes, test) @ moduli - test.stress for test in used}
-    material = _material(form.law, values)
+    values = form.fitting.values(shapes, moduli)
+    residuals = {
+        test.kind: form.columns(shapes, test.kind, test.stretch) @ moduli - test.stress
+        for test in used
+    }
+    material = _material(form, values)
     unstable = {} if material is None else dict(_unstable(material, used))
     return Fit(form, tuple(used), values, shapes, moduli, residuals, material, unstable)
-
-
-ONE = np.ones(1)
 
 
 def _up_to(test: RubberTest, largest: float) -> RubberTest:
@@ -149,12 +134,12 @@ def _solved(form: Form, tests: Sequence[RubberTest]) -> tuple[tuple[float, ...],
     expected = np.concatenate([test.stress for test in tests])
 
     def moduli(shapes: Sequence[float]) -> tuple[Array, Array]:
-        columns = np.concatenate([form.columns(shapes, test) for test in tests])
+        columns = np.concatenate([form.columns(shapes, test.kind, test.stretch) for test in tests])
         if not np.isfinite(columns).all():
             return np.zeros(columns.shape[1]), 1e3 * (1 + np.abs(expected))
         scale = np.linalg.norm(columns, axis=0)
         scale[scale == 0] = 1
-        if form.positive:
+        if form.fitting.positive:
             found = nnls(columns / scale, expected)[0] / scale
             kept = found > LEAST_MODULUS  # less can be written in no study file
             if not kept.all():
@@ -164,14 +149,16 @@ def _solved(form: Form, tests: Sequence[RubberTest]) -> tuple[tuple[float, ...],
             found = np.linalg.lstsq(columns / scale, expected, rcond=None)[0] / scale
         return found, columns @ found - expected
 
-    if not form.low:
+    if not form.fitting.low:
         return (), moduli(())[0]
 
     def residuals(shapes: Array) -> Array:
         return moduli(shapes)[1]
 
-    starts = sorted(form.starts, key=lambda start: float(np.sum(residuals(np.array(start)) ** 2)))
-    bounds = np.array(form.low), np.array(form.high)
+    starts = sorted(
+        form.fitting.starts, key=lambda start: float(np.sum(residuals(np.array(start)) ** 2))
+    )
+    bounds = np.array(form.fitting.low), np.array(form.fitting.high)
     ends = [
         least_squares(
             residuals,
@@ -187,70 +174,6 @@ def _solved(form: Form, tests: Sequence[RubberTest]) -> tuple[tuple[float, ...],
     ]
     shapes = tuple(map(float, min(ends, key=lambda end: end.cost).x))
     return shapes, moduli(shapes)[0]
-
-
-def _linear(name: str, parameters: tuple[str, ...]) -> Form:
-    """A law that is linear in all of its parameters."""
-    law = "rivlin" if name.startswith("rivlin") else name
-    stiff = 1e3  # of a rubber to which each modulus is added, so that there is one
-
-    def columns(_shapes: Sequence[float], test: RubberTest) -> Array:
-        of = {AS_RIVLIN.get(key, key): 0.0 for key in parameters}
-        base = stress(_rivlin(of | {"c10": stiff}), test.kind, test.stretch)
-        found = []
-        for key in of:
-            more = _rivlin(of | {key: 1.0, "c10": stiff + (key == "c10")})
-            found.append(stress(more, test.kind, test.stretch) - base)
-        return np.array(found).T
-
-    def values(_shapes: Sequence[float], moduli: Array) -> dict[str, object]:
-        return dict(zip(parameters, map(float, moduli), strict=True))
-
-    return Form(law, columns, values)
-
-
-def _rivlin(values: Mapping[str, float]) -> RubberLaw:
-    return rubber.from_dict({"law": "rivlin", "kappa": 1e9, **values})
-
-
-def _ogden(count: int) -> Form:
-    """Terms of powers; each modulus is half its mu alpha, the part of the shear modulus."""
-
-    def columns(powers: Sequence[float], test: RubberTest) -> Array:
-        a, b = squares(test.kind, test.stretch)
-        alpha = np.where(np.abs(powers) > LEAST_POWER, powers, LEAST_POWER)
-        along, through = test.stretch[:, None], 1 / np.sqrt(a * b)[:, None]
-        return np.asarray(2 / alpha * (along**alpha - through**alpha) / along)
-
-    def values(powers: Sequence[float], moduli: Array) -> dict[str, object]:
-        terms = [(2 * m / a, a) for m, a in zip(moduli, powers, strict=True) if m > 0]
-        terms.sort(key=lambda term: -abs(term[0]))
-        mu, alpha = zip(*terms, strict=True) if terms else ((), ())
-        return {"convention": "textbook", "mu": [*map(float, mu)], "alpha": [*map(float, alpha)]}
-
-    starts = tuple(combinations(POWERS, count))
-    ends = (-LARGEST_POWER,) * count, (LARGEST_POWER,) * count
-    return Form("ogden", columns, values, starts, *ends, positive=True)
-
-
-def _scaled(
-    law: str,
-    shape: str,
-    starts: tuple[tuple[float, ...], ...],
-    low: tuple[float, ...],
-    high: tuple[float, ...],
-) -> Form:
-    """A law of one modulus, mu, and one shape."""
-
-    def columns(shapes: Sequence[float], test: RubberTest) -> Array:
-        one = {"law": law, "mu": 1.0, shape: float(shapes[0]), "kappa": 1e9}
-        with np.errstate(all="ignore"):
-            return stress(rubber.from_dict(one), test.kind, test.stretch)[:, None]
-
-    def values(shapes: Sequence[float], moduli: Array) -> dict[str, object]:
-        return {"mu": float(moduli[0]), shape: float(shapes[0])}
-
-    return Form(law, columns, values, starts, low, high)
 
 
 def entry(found: Fit) -> dict[str, object]:
@@ -269,12 +192,11 @@ def _rounded(value: object) -> object:
     return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
 
 
-def _material(law: str, values: Mapping[str, object]) -> RubberLaw | None:
-    """The rubber of some parameters, as a polynomial of Rivlin where its own law refuses a sign."""
-    polynomial = {AS_RIVLIN.get(key, key): value for key, value in values.items()}
-    for name, own in ((law, values), ("rivlin", polynomial)):
+def _material(form: Form, values: Values) -> RubberLaw | None:
+    """The rubber of some parameters, by a wider law where their own refuses them."""
+    for entry in ({"law": form.law.law()} | values, form.fitting.wider(values)):
         try:
-            return rubber.from_dict({"law": name, "kappa": 1e9, **own})
+            return rubber.from_dict(entry | {"kappa": STIFF}) if entry else None
         except UnsolvableCase:
             continue
     return None

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from solver.rubber.rubber_law import InvariantLaw, parameter
+from solver.rubber.rubber_law import Fitting, InvariantLaw, parameter, scaled
 
 SERIES = (1 / 2, 1 / 20, 11 / 1050, 19 / 7000, 519 / 673750)
 
@@ -22,6 +22,11 @@ class ArrudaBoyce(InvariantLaw):
         terms = [(i, self.mu * c * self.lambda_m ** (2 - 2 * i)) for i, c in enumerate(SERIES, 1)]
         energy = sum(c * (i1**i - 3.0**i) for i, c in terms)
         return energy, sum(i * c * i1 ** (i - 1) for i, c in terms), 0.0
+
+    @classmethod
+    def fittings(cls) -> dict[str, Fitting]:
+        """How it is fitted to tests."""
+        return {cls.law(): scaled("mu", "lambda_m", (1.2, 2.0, 4.0, 8.0), 1.01, 100.0)}
 
 
 LAW = ArrudaBoyce

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from solver.rubber.rubber_law import Array, InvariantLaw, parameter
+from solver.rubber.rubber_law import Array, Fitting, InvariantLaw, parameter, scaled
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +20,11 @@ class Gent(InvariantLaw):
         left = 1 - (i1 - 3) / self.jm
         left = np.where(left > 0, left, np.nan)
         return -self.mu * self.jm / 2 * np.log(left), self.mu / 2 / left, 0.0
+
+    @classmethod
+    def fittings(cls) -> dict[str, Fitting]:
+        """How it is fitted to tests."""
+        return {cls.law(): scaled("mu", "jm", (3.0, 10.0, 30.0, 100.0, 300.0), 1e-2, 1e6)}
 
     def margin(self, a: Array, b: float, shear: Array) -> float:
         """1 - x / Jm, the smallest."""

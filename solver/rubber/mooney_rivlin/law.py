@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from solver.rubber.rubber_law import InvariantLaw, parameter
+from solver.rubber.rubber_law import Fitting, InvariantLaw, linear, parameter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +22,11 @@ class MooneyRivlin(InvariantLaw):
     def branch(self) -> tuple[float, float]:
         """C10 and C01 of a branch with a memory: those of the law [MPa]."""
         return self.c10, self.c01
+
+    @classmethod
+    def fittings(cls) -> dict[str, Fitting]:
+        """How it is fitted to tests; of another sign of C01 it is a polynomial."""
+        return {cls.law(): linear(("c10", "c01"), lambda values: {"law": "rivlin"} | values)}
 
 
 LAW = MooneyRivlin

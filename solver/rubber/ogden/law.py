@@ -10,16 +10,20 @@ Two stretches of a surface are given by q = l1^2 + l2^2 and D = l1 l2, and no ei
 which has no trouble where the two are equal: near x = 1 it is a series in x - 1.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
 from geometry.refusal import is_number
 from solver.refusal import UnsolvableCase
-from solver.rubber.rubber_law import Array, RubberLaw, parameter
+from solver.rubber.rubber_law import Array, Fitting, RubberLaw, Values, parameter
 
 TEXTBOOK, ABAQUS = "textbook", "abaqus"
 MOST = 4
+POWERS = (-6.0, -2.0, -0.5, 0.7, 1.5, 2.5, 5.0, 9.0)  # to start a fit from
+LEAST_POWER, LARGEST_POWER = 1e-3, 20.0
 NEAR, TERMS = 0.05, 10  # x - 1 up to which the series is taken, and its terms: exact to rounding
 
 
@@ -43,6 +47,35 @@ class Ogden(RubberLaw):
         if 0 in self.alpha:
             raise UnsolvableCase("alpha", list(self.alpha), "powers that are not 0")
         super().__post_init__()
+
+    @classmethod
+    def fittings(cls) -> dict[str, Fitting]:
+        """How it is fitted to tests, with some terms; the modulus of each is half its mu al.
+
+        None may be negative: with other signs a law is of no rubber outside of its tests.
+        """
+
+        def units(powers: Sequence[float]) -> list[Values]:
+            alpha = [power if abs(power) > LEAST_POWER else LEAST_POWER for power in powers]
+            return [{"convention": TEXTBOOK, "mu": (2 / a,), "alpha": (a,)} for a in alpha]
+
+        def values(powers: Sequence[float], moduli: Sequence[float]) -> Values:
+            terms = [(2 * m / a, a) for m, a in zip(moduli, powers, strict=True) if m > 0]
+            terms.sort(key=lambda term: -abs(term[0]))
+            mu, alpha = zip(*terms, strict=True) if terms else ((), ())
+            return {"convention": TEXTBOOK, "mu": [*map(float, mu)], "alpha": [*map(float, alpha)]}
+
+        return {
+            f"{cls.law()}{count}": Fitting(
+                units=units,
+                values=values,
+                starts=tuple(combinations(POWERS, count)),
+                low=(-LARGEST_POWER,) * count,
+                high=(LARGEST_POWER,) * count,
+                positive=True,
+            )
+            for count in range(1, MOST + 1)
+        }
 
     @property
     def terms(self) -> list[tuple[float, float]]:

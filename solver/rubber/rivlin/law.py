@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from solver.rubber.rubber_law import InvariantLaw, parameter
+from solver.rubber.rubber_law import Fitting, InvariantLaw, linear, parameter
 
 ORDERS = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
 
@@ -36,6 +36,14 @@ class Rivlin(InvariantLaw):
             w1 = w1 + (i * c * x ** (i - 1) * y**j if i else 0.0)
             w2 = w2 + (j * c * x**i * y ** (j - 1) if j else 0.0)
         return energy, w1, w2
+
+    @classmethod
+    def fittings(cls) -> dict[str, Fitting]:
+        """How it is fitted to tests: with all constants up to an order."""
+        return {
+            f"{cls.law()}{order}": linear([f"c{i}{j}" for i, j in ORDERS if i + j <= order])
+            for order in (2, 3)
+        }
 
 
 LAW = Rivlin

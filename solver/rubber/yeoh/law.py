@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from solver.rubber.rubber_law import InvariantLaw, parameter
+from solver.rubber.rubber_law import Fitting, InvariantLaw, Values, linear, parameter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,6 +19,16 @@ class Yeoh(InvariantLaw):
         x = i1 - 3
         energy = x * (self.c1 + x * (self.c2 + x * self.c3))
         return energy, self.c1 + x * (2 * self.c2 + 3 * x * self.c3), 0.0
+
+    @classmethod
+    def fittings(cls) -> dict[str, Fitting]:
+        """How it is fitted to tests; of another sign of C3 it is a polynomial."""
+
+        def wider(values: Values) -> Values:
+            c1, c2, c3 = values.values()
+            return {"law": "rivlin", "c10": c1, "c20": c2, "c30": c3}
+
+        return {cls.law(): linear(("c1", "c2", "c3"), wider)}
 
 
 LAW = Yeoh

@@ -121,6 +121,14 @@ FILES = {  # name: text or bytes
         "pressure_MPa;extension_mm;force_N\n",
         lambda p, e, f: f"{p};{-LENGTH * e:g};{f}".replace("-", "\u2212"),
     ),
+    "scatter": written(
+        "Pressure (bar),Contraction rate [%],Force_kN_mean,Force std (kN)\n",
+        lambda p, e, f: f"{10 * p:g},{100 * e:g},{f / 1e3:g},0.01",
+    ),
+    "kilograms, units in brackets in a row": written(
+        "Load\tPressure\tPosition\n(kg)\t(bar)\t(mm)\n",
+        lambda p, e, f: f"{f / 9.80665:.9g}\t{10 * p:g}\t{LENGTH * e:g}\t",
+    ),
     "words between": written(
         "pressure_MPa,contraction,force_N\n", right, TRUE[:3], "second run,,\n"
     )
@@ -202,6 +210,10 @@ REFUSED = {  # text, what the line says
     "another unit in a cell": (
         "p [bar],contraction,F [N]\n3 kPa,0,620\n",
         ":2: '3 kPa' under 'p \\[bar\\]' has a unit that is not of this column",
+    ),
+    "another muscle": (
+        written("p_MPa,length_mm,F_N\n", lambda p, e, f: f"{p},{300 * (1 - e):g},{f}"),
+        "lengths of 270 to 300 mm .* are not of a muscle 200 mm long; perhaps of another muscle",
     ),
     "lengths in cm": (
         written("p_MPa,length_mm,F_N\n", lambda p, e, f: f"{p},{20 * (1 - e):g},{f}"),

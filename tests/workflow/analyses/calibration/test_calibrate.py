@@ -123,6 +123,13 @@ def test_a_file_that_is_no_map_is_refused(tmp_path, text, said):
         bench.read(str(path), 300.0)
 
 
+def test_forces_of_another_unit_are_refused(study, tmp_path):
+    (tmp_path / "forces.csv").write_text("pressure_MPa,contraction,force\n0.3,0,0.7\n0.3,0.1,0.2\n")
+    (error,) = bench.refused(study())
+    assert "calibration.mine.reference" in str(error)
+    assert "perhaps kN under N" in str(error)
+
+
 def test_maps_and_files_are_read(tmp_path):
     assert bench.read("martens2017", 300.0).name == "martens2017"
     path = tmp_path / "own.csv"
