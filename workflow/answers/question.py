@@ -276,15 +276,8 @@ class _Question:
         """A case of one state, and its solution; raises if there is no such state."""
         studied = self.studied
         try:
-            case = Case(
-                muscle=studied.muscle,
-                rubber=studied.rubber,
-                thread=studied.thread,
-                path=path,
-                model=model,
-                effects=model_choice.readable(model, variant.effects),
-                numerics=variant.numerics,
-            )
+            effects = model_choice.readable(model, variant.effects)
+            case = studied.case(path, model, effects=effects, numerics=variant.numerics)
         except Refusal as refusal:
             raise StudyError(f"{self.name} by {model}: {refusal}") from None
         solution = self.store.solution(case)

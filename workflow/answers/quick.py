@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable
 
-from solver.case import Case
 from solver.effects import Effects
 from solver.load_path import CONTRACTION_LIMITS, LoadPath, PathKind
 from solver.models.cylinder.direct import between, direct
@@ -20,15 +19,8 @@ class Quick:
     """States of one muscle; 2 to 4 ms each."""
 
     def __init__(self, studied: StudiedMuscle, effects: Effects | None = None) -> None:
-        case = Case(
-            muscle=studied.muscle,
-            rubber=studied.rubber,
-            thread=studied.thread,
-            path=LoadPath(kind=PathKind.ISOBARIC, held=0.0, stops=(0.0,)),
-            model=NAME,
-            effects=effects or Effects(),
-        )
-        self._cylinder = Cylinder(case)
+        path = LoadPath(kind=PathKind.ISOBARIC, held=0.0, stops=(0.0,))
+        self._cylinder = Cylinder(studied.case(path, NAME, effects=effects or Effects()))
 
     def state(self, pressure: float, contraction: float) -> dict[str, float] | None:
         """Variables of the state, as in solver/record.py; None where there is none."""

@@ -92,12 +92,9 @@ def _case(studied: StudiedMuscle, variant: Variant, model: str, pressure: float)
     free = Quick(studied).contraction(pressure, 0.0)
     last = min(free, MOST) if math.isfinite(free) and free > 0 else 0.1
     stops = stops_to(math.floor(100 * last) / 100)
-    return Case(
-        muscle=studied.muscle,
-        rubber=studied.rubber,
-        thread=studied.thread,
-        path=LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=stops, zero_force=True),
-        model=model,
+    return studied.case(
+        LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=stops, zero_force=True),
+        model,
         effects=model_choice.readable(model, variant.effects),
         numerics=variant.numerics,
         fields_at=(stops[-1],) if MODELS[model].fields else (),
@@ -218,22 +215,33 @@ def _measures(studied: StudiedMuscle) -> Iterator[Row]:
     fittings = 2 * built.fitting_length if built.fitting_length is not None else math.nan
     note = "" if math.isfinite(fittings) else "no fitting_length is given"
     yield Row("installed length", muscle.length + fittings, "mm", note)
+    masses = _masses(studied)
+    lacking = [name for name, mass in masses.items() if mass is None]
+    note = f"without what is not given: {', '.join(lacking)}" if lacking else ""
+    yield Row("mass", mass_of(studied), "g", note)
+
+
+def mass_of(studied: StudiedMuscle) -> float:
+    """Of tube, threads and fittings [g], as far as it is known; NaN where nothing is."""
+    known = [mass for mass in _masses(studied).values() if mass is not None]
+    return sum(known) if known else math.nan
+
+
+def _masses(studied: StudiedMuscle) -> dict[str, float | None]:
+    """Masses [g] by what they need to be known; None where that is not given."""
+    muscle, built = studied.muscle, studied.installation
     area = math.pi / 4 * (muscle.outer_diameter**2 - muscle.inner_diameter**2)
     tube = area * (muscle.length + 2 * muscle.cap_length) / 1000  # cm3
-    masses = {"density": built.density and tube * built.density}
+    found = {"density": built.density and tube * built.density}
     if muscle.braid is not None:
         lengths = [n.threads * muscle.length * math.hypot(1, n.tangent) for n in muscle.layers]
-        known = built.thread_diameter and built.thread_density
-        section = math.pi / 4 * (built.thread_diameter or math.nan) ** 2
-        all_threads = sum(lengths) * section / 1000
-        masses["thread_diameter and thread_density"] = known and (
-            all_threads * (built.thread_density or math.nan)
+        wide, dense = built.thread_diameter, built.thread_density
+        found["thread_diameter and thread_density"] = (
+            None
+            if wide is None or dense is None
+            else sum(lengths) * math.pi / 4 * wide**2 / 1000 * dense
         )
-    masses["fitting_mass"] = built.fitting_mass
-    lacking = [name for name, mass in masses.items() if mass is None]
-    known_mass = sum(mass for mass in masses.values() if mass is not None)
-    note = f"without what is not given: {', '.join(lacking)}" if lacking else ""
-    yield Row("mass", known_mass if len(lacking) < len(masses) else math.nan, "g", note)
+    return found | {"fitting_mass": built.fitting_mass}
 
 
 def _measured(curve: Curve, studied: StudiedMuscle) -> Iterator[Row]:

@@ -6,6 +6,7 @@ from workflow.study.schema import SHEET
 
 
 wildcard_constraints:
+    design="|".join(map(re.escape, PLAN.study.design)) or "none",
     scene="|".join(map(re.escape, PLAN.study.scenes)) or "none",
 
 
@@ -31,3 +32,39 @@ rule sheet:
     shell:
         "python -m workflow sheets --study {params.study:q} --scene {wildcards.scene:q}"
         " --output {output[0]:q} > {log:q} 2>&1"
+
+
+# Requirements of the study file -> the muscle that meets them, or what stands in the way.
+#
+#   in   what the study file says of it; solver/ and workflow/answers/design/
+#   out  results/design/<design>.yaml     an entry to paste; .json, .csv, .png, .svg, .html
+#
+# What is solved on the way is kept in results/cases: a design that was broken off goes on.
+def design_digest(wildcards):
+    asked = PLAN.study.design[wildcards.design]
+    bases = sorted({asked.base, *(asked.free.muscle or ())})
+    made_of = [(name, PLAN.study.muscles[name]) for name in bases]
+    return digest(repr((asked, made_of, sorted(PLAN.study.rubbers.items()))))
+
+
+rule design_of:
+    input:
+        sources=lambda _: sources("workflow.programs.design"),
+    output:
+        multiext("results/design/{design}", ".yaml", ".json", ".csv", ".png", ".svg", ".html"),
+    log:
+        "results/logs/design/{design}.log",
+    params:
+        study=lambda _: STUDY,  # as it is, braces and all
+        asked=design_digest,
+    message:
+        "Designing {wildcards.design}"
+    shell:
+        "python -m workflow design {wildcards.design:q} --study {params.study:q} > {log:q} 2>&1"
+
+
+rule design:
+    input:
+        expand("results/design/{design}.yaml", design=PLAN.study.design),
+    message:
+        "Designs are in results/design"

@@ -271,6 +271,7 @@ def _written(file: StudyFile) -> Iterator[tuple[Keys, Any]]:
         "muscles": file.muscles,
         "scenes": file.scenes,
         "calibration": file.calibration,
+        "design": file.design,
     }
     for section, entries in sections.items():
         for name, entry in entries.items():

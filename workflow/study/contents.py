@@ -13,7 +13,7 @@ from solver.numerics import Numerics
 from solver.rubber.rubber_law import RubberLaw
 from workflow.study.installation import Installation
 from workflow.study.limits import Limits
-from workflow.study.schema import CalibrationEntry, Scene
+from workflow.study.schema import CalibrationEntry, DesignEntry, Scene
 from workflow.study.source import Source
 
 
@@ -59,6 +59,8 @@ class Study:
     variants: dict[str, Variant]
     scenes: dict[str, Scene]
     calibration: dict[str, CalibrationEntry]
+    rubbers: dict[str, RubberLaw] = field(default_factory=dict)
+    design: dict[str, DesignEntry] = field(default_factory=dict)
     wall_time: int  # s, of one case
     memory: int  # MB, of one case
     warnings: tuple[str, ...] = ()  # what may be meant otherwise

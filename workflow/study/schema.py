@@ -60,6 +60,21 @@ QUANTITIES = {  # models that can give it
     **{name: tuple(MODELS) for name in ZERO_FORCE},
     SHEET: tuple(m for m in MODELS if {"volume", "stiffness"} <= set(MODELS[m].quantities)),
 }
+REQUIRED = (  # of a design
+    "force",
+    "stroke",
+    "free_contraction",
+    "blocked_force",
+    "outer_diameter",
+    "length",
+    "air",
+    "thread_share",
+    "rubber_stretch",
+    "bore_stretch",
+    "thread_cover",
+)
+MINIMISED = ("air", "outer_diameter", "mass", "length")
+MAXIMISED = ("force", "work")
 FORCE_MAPS = (  # read by workflow/data/reference.py
     "festo_musclesim_dmsp40",
     "martens2017_dmsp10",
@@ -509,6 +524,43 @@ class CalibrationEntry(Entry):
     report_pressure: Values = (0.2, 0.4, 0.6)  # MPa
 
 
+class FreeEntry(Entry):
+    """What a design may choose: numbers between two, threads among integers, names of a list."""
+
+    inner_diameter: Range | None = None
+    wall_thickness: Range | None = None
+    length: Range | None = None
+    angle: Range | None = None
+    threads: _tuple_of(tuple[Whole, Whole]) | None = None
+    material: Names | None = None
+    muscle: Names | None = None  # bases
+
+
+class RequirementEntry(Entry):
+    """One requirement of a design."""
+
+    quantity: _one_of(*REQUIRED)
+    at_least: Number | None = None
+    at_most: Number | None = None
+    contraction: Number | None = None
+    pressure: Number | None = None  # MPa; else that of the design
+    load: Number | None = None  # N
+
+
+class DesignEntry(Entry):
+    """A muscle that is asked for."""
+
+    base: Name
+    pressure: Number  # MPa
+    free: FreeEntry
+    require: dict[Name, RequirementEntry]
+    minimise: _some_of(*MINIMISED) = ()
+    maximise: _some_of(*MAXIMISED) = ()
+    contraction: Number | None = None  # of the objective; else the largest that is required
+    reserve: Annotated[Number, Field(ge=0, le=10)] = 0.0
+    seed: Whole = 1
+
+
 class StudyFile(Entry):
     """The whole file."""
 
@@ -519,3 +571,4 @@ class StudyFile(Entry):
     limits: LimitsEntry = LimitsEntry()
     scenes: dict[Name, Scene]
     calibration: dict[Name, CalibrationEntry] = {}
+    design: dict[Name, DesignEntry] = {}

@@ -24,7 +24,8 @@ from workflow.study.schema import (
 
 T = TypeVar("T")
 Keys = tuple[str | int, ...]
-NAMED = ("materials", "muscles", "variants", "scenes", "calibration")  # sections of entries by name
+# Sections of entries by name
+NAMED = ("materials", "muscles", "variants", "scenes", "calibration", "design")
 
 
 @dataclass(frozen=True)

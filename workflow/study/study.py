@@ -23,7 +23,7 @@ from solver.memory import Memory
 from solver.numerics import KINDS, Numerics, Spread
 from solver.rubber import LAWS
 from solver.rubber.rubber_law import LEAST_KAPPA, RubberLaw
-from workflow.study import checks, fit, in_time, layers, sweep, units
+from workflow.study import checks, design, fit, in_time, layers, sweep, units
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices, shown
 from workflow.study.folders import DEFAULT
@@ -139,6 +139,8 @@ def _of(source: Source, findings: Findings | None) -> Study:
         variants=variants,
         scenes=file.scenes,
         calibration=file.calibration,
+        rubbers=rubbers,
+        design=file.design,
         wall_time=file.limits.wall_time,
         memory=file.limits.memory,
         warnings=tuple(checks.unusual(source, file, muscles)),
@@ -152,6 +154,7 @@ def _of(source: Source, findings: Findings | None) -> Study:
             for n, c in study.calibration.items()
             if found.no_more(checks.calibration(study, n))
         },
+        design={n: d for n, d in study.design.items() if found.no_more(design.check(study, n))},
     )
     if findings is None:
         found.say()

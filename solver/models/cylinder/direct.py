@@ -13,11 +13,14 @@ WIDER = 1.05  # factor of the radius, in search of the one that holds a pressure
 ROUNDS, EXACT = 100, 1e-15  # steps of a root, and its size
 
 
-def direct(cylinder: Cylinder, pressure: float, contraction: float) -> Array | None:
+def direct(
+    cylinder: Cylinder, pressure: float, contraction: float, start: float = 1.0
+) -> Array | None:
     """The unknowns at a pressure [MPa] and a contraction.
 
-    The wall is blown up from its rest until it holds the pressure: of several such radii it is
-    the smallest. None where there is none within ``REACH``.
+    The wall is blown up from its rest (or from ``start``, as a share of the radius) until it holds
+    the pressure: of several such radii it is the smallest. None where there is none within
+    ``REACH``.
     """
     lz, twist = 1 - contraction, [0.0] * cylinder.free
     if cylinder.rigid:
@@ -27,7 +30,7 @@ def direct(cylinder: Cylinder, pressure: float, contraction: float) -> Array | N
     def off(share: float) -> float:
         return cylinder.state(np.array([share, lz, *twist])).pressure - pressure
 
-    low = 1.0
+    low = start
     while off(low) > 0:
         low /= WIDER
         if low < 1 / REACH:

@@ -1,0 +1,1 @@
+"""The muscle that meets requirements: ``snakemake --cores 2 design``."""
