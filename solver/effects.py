@@ -2,7 +2,7 @@
 
 One list, ``EFFECTS``. A model says which it carries and which switches it reads. What
 is off is absent from the solve: no unknowns, no terms. In FreeFEM each alternative is an include
-of its own, and a program is composed of those that are on (solver/solve.py).
+of its own, and a program is composed of those that are on (solver/program.py).
 """
 
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Solve a case by the model it names; whatever happens, the result has a status."""
 
-import csv
-import math
 import tempfile
 import time
 from dataclasses import dataclass, field, replace
@@ -10,27 +8,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.braid import Kind, Layer, LayeredBraid
-from geometry.labels import Boundary
-from geometry.muscle import Muscle
 from geometry.seal import is_sealed, why_none
-from solver import continuity, files, freefem, in_time
+from solver import continuity, files, freefem, in_time, output, program
 from solver.case import Case
-from solver.continuity import Solved, States, check_state
-from solver.effects import Volume
+from solver.continuity import Solved, States
 from solver.judge import judged
-from solver.load_path import LoadPath, PathKind, Waypoint
-from solver.material import Thread
+from solver.load_path import PathKind, Waypoint
 from solver.models import MODELS
 from solver.record import Solution, unreached, variables
 from solver.smoothing import marked
 from solver.status import CaseStatus, StateStatus, state_status
-from solver.zero_force import Search, limit_pressure
+from solver.zero_force import limit_pressure
 
-RUBBISH = (ValueError, TypeError, LookupError, ArithmeticError, csv.Error)  # unreadable output
-LARGEST_TEXT, LARGEST_ROW = 2**14, 2**12  # bytes
 LARGEST_FIELDS = 400  # bytes per byte of the mesh
-LARGEST_COUNT = 10**9
 ABOVE = (2.0, 4.0)  # times the limit pressure of the rubber
 
 
@@ -219,14 +209,16 @@ def _follow(
     starts: dict[float, bytes] = {}
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as scratch:
         work = Path(scratch)
-        (work / "composition.idp").write_text(composition(case))
+        (work / "composition.idp").write_text(program.composition(case))
         if case.path.history is None:
-            (work / "waypoints.txt").write_text(waypoint_text(case, way, started=bool(start)))
+            (work / "waypoints.txt").write_text(
+                program.waypoint_text(case, way, started=bool(start))
+            )
         else:
             in_time.write(case, work)
         if start:
             (work / "start.txt").write_bytes(start)
-        given = flags(case, mesh.resolve())
+        given = program.flags(case, mesh.resolve())
         try:
             usage = _run_until(until, limits, case, given, work, log.resolve())
         except freefem.OutOfTime:
@@ -237,17 +229,17 @@ def _follow(
             status, reason = CaseStatus.SOLVER_ERROR, str(error)
         searched = None
         try:
-            ended = files.read(work / "reason.txt", LARGEST_TEXT) or b""
+            ended = files.read(work / "reason.txt", output.LARGEST_TEXT) or b""
             if status is None:
                 reason = freefem.readable(ended.decode(errors="replace").strip())
-            unknowns = _number(work / "unknowns.txt")
+            unknowns = output.number(work / "unknowns.txt")
             largest = LARGEST_FIELDS * mesh.stat().st_size
-            _collect(case, way, work, largest, states, fields)
+            output.collect(case, way, work, largest, states, fields)
             if case.path.history is not None:
-                in_time.add(states, _rows(work / "times.csv", len(way)))
-            starts = _starts(case, way, work, largest)
-            searched = _searched(work / "zero.txt")
-        except RUBBISH as error:
+                in_time.add(states, output.rows(work / "times.csv", len(way)))
+            starts = output.starts(case, way, work, largest)
+            searched = output.searched(work / "zero.txt")
+        except output.RUBBISH as error:
             status = status or CaseStatus.SOLVER_ERROR
             reason = reason or f"what FreeFEM has written cannot be read ({error})"
         stops = [point.stop for point in way if point.stop is not None]
@@ -271,7 +263,7 @@ def _run_until(
 
     def run() -> freefem.Usage:
         left = replace(limits, wall_time=max(until - time.monotonic(), 0))
-        return freefem.run(program(case), given, work, log, left, includes(case))
+        return freefem.run(program.file(case), given, work, log, left, program.includes(case))
 
     try:
         return run()
@@ -302,190 +294,6 @@ def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solut
         state_status=[StateStatus.NOT_REACHED] * count,
         log=log,
     )
-
-
-def includes(case: Case) -> list[Path]:
-    """Folders in which the program of a case finds its includes."""
-    return [*MODELS[case.model].includes, *case.rubber.includes()]
-
-
-def program(case: Case) -> Path:
-    """The FreeFEM program of a case."""
-    own = MODELS[case.model].program
-    return own if case.path.history is None else own.with_name(f"{own.stem}_in_time.edp")
-
-
-def composition(case: Case) -> str:
-    """The includes of a program: one per active effect."""
-    threads = case.effects.threads if case.muscle.braid else "none"
-    files = [f"threads_{threads}.idp", *MODELS[case.model].composition(case)]
-    remembers = "macro remembers() // EOM\n" if case.remembers else ""
-    return remembers + "".join(f'include "{name}"\n' for name in files)
-
-
-def waypoint_text(case: Case, way: list[Waypoint], *, started: bool = False) -> str:
-    """The file that solver/path/output.idp reads; ``started`` where the way begins at a state."""
-    wanted_fields = {k for k, stop in enumerate(case.path.stops) if stop in case.fields_at}
-    lines = [f"{len(way)} {started:d} {continuity.SHARE!r}", "0 0 0 0 0 0 0"]
-    if case.path.zero_force:
-        search = Search.of(case)
-        lines[1] = (
-            f"1 {search.held:d} {float(search.still)!r} {search.swept:d} "
-            f"{search.low!r} {float(search.high)!r} {search.step!r}"
-        )
-    for point in way:
-        wanted = 0 if point.stop is None else 2 if point.stop in wanted_fields else 1
-        lines.append(
-            f"{point.first:d} {float(point.first_target)!r} "
-            f"{point.second:d} {float(point.second_target)!r} {wanted}"
-        )
-    return "\n".join(lines) + "\n"
-
-
-def flags(case: Case, mesh: Path) -> dict[str, str | float]:
-    """Flags of solver/path/parameters.idp and of the includes that are composed in."""
-    muscle, newton = case.muscle, case.numerics.newton
-    values: dict[str, str | float] = {
-        "mesh": str(mesh),
-        "waypoints": "waypoints.txt",
-        "inner_radius": muscle.inner_radius,
-        "outer_radius": muscle.outer_radius,
-        "half_length": muscle.length / 2,
-        **case.rubber.flags(),
-        "newton_tolerance": newton.tolerance,
-        "newton_limit": newton.iterations,
-        "smallest_step": newton.smallest_step,
-        "thread_layers": 0,
-        "layers": "none",
-        "slack_width": 1.0,  # read by no bare tube
-    }
-    if case.thread is not None:
-        layers = _layers(muscle, case.thread)
-        values |= {
-            "thread_layers": len(layers),
-            "layers": ",".join(repr(number) for layer in layers for number in layer),
-            "slack_width": case.numerics.slack.width_of(case.thread),
-        }
-    values |= MODELS[case.model].flags(case)
-    return {k: v if isinstance(v, str | int) else float(v) for k, v in values.items()}
-
-
-def _layers(muscle: Muscle, thread: Thread) -> list[tuple[float, ...]]:
-    """Of every layer what solver/path/parameters.idp reads; families of one shape are one layer."""
-    found: dict[Layer, int] = {}
-    for layer in muscle.layers:
-        alike = layer
-        if isinstance(muscle.braid, LayeredBraid):
-            alike = replace(layer, threads=1, sense=1)
-        found[alike] = found.get(alike, 0) + layer.threads
-    return [
-        (
-            layer.radius,
-            layer.carrier,
-            math.tan(math.atan(layer.tangent)),
-            count * thread.stiffness * layer.share,
-            float(layer.kind is Kind.EMBEDDED),
-            Boundary.OUTER.value
-            if layer.kind is Kind.SLEEVE
-            else Boundary.LAYER_1.value + muscle.layer_radii.index(layer.radius),
-        )
-        for layer, count in found.items()
-    ]
-
-
-def _collect(
-    case: Case,
-    way: list[Waypoint],
-    work: Path,
-    largest_fields: int,
-    states: dict[str, NDArray[np.float64]],
-    fields: dict[int, dict[str, NDArray[np.float64]]],
-) -> None:
-    """Read what FreeFEM has left in its folder, if it makes sense."""
-    found = _rows(work / "states.csv", len(way) + 1)
-    numbers = [_waypoint(row, way, case.path) for row in found]
-    if len(set(numbers)) < len(numbers):
-        raise ValueError("two states at one waypoint")
-    for number, row in zip(numbers, found, strict=True):
-        zero = number == len(way)
-        stop = len(case.path.stops) if zero else way[number].stop
-        assert stop is not None
-        check_state(case, stop, row)
-        table = files.read(work / f"fields_{number}.txt", largest_fields)
-        if table is not None:
-            fields[stop] = _fields(case.model, table)
-        for name in variables(case.path).keys() & row.keys():
-            states[name][stop] = row[name]
-    if len({len(table) for tables in fields.values() for table in tables.values()}) > 1:
-        raise ValueError("fields of different sizes")
-    if case.muscle.braid is None:
-        for name in ("thread_stretch_min", "thread_stretch_max"):
-            states[name][:] = np.nan
-    if case.effects.volume is Volume.INCOMPRESSIBLE:
-        states["unstable_modes"][:] = np.nan  # solid_incompressible.idp counts none
-
-
-def _starts(case: Case, way: list[Waypoint], work: Path, largest: int) -> dict[float, bytes]:
-    """The whole states that it has left, by their swept control."""
-    found: dict[float, bytes] = {}
-    for number, point in enumerate(way):
-        if point.stop is not None:
-            text = files.read(work / f"start_{number}.txt", largest)
-            if text is not None:
-                found[case.path.stops[point.stop]] = text
-    return found
-
-
-def _number(path: Path) -> int:
-    """The number in a file; 0 if FreeFEM did not come to write it."""
-    text = (files.read(path, LARGEST_TEXT) or b"").decode().strip()
-    number = int(text) if text else 0
-    if not 0 <= number <= LARGEST_COUNT:
-        raise ValueError(f"{number} in {path.name}")
-    return number
-
-
-def _rows(path: Path, most: int = 1000) -> list[dict[str, float]]:
-    """Rows of a table of numbers, ``most`` of them; a last line that was cut off is dropped."""
-    text = (files.read(path, LARGEST_ROW * (most + 1)) or b"").decode()
-    lines = [line for line in text.splitlines(keepends=True) if line.endswith("\n")]
-    rows = [{n: float(value) for n, value in row.items()} for row in csv.DictReader(lines)]
-    for row in rows:
-        for name, value in row.items():
-            if math.isinf(value):
-                raise ValueError(f"{name} is {value}")
-    return rows
-
-
-def _waypoint(row: dict[str, float], way: list[Waypoint], path: LoadPath) -> int:
-    """The waypoint that a row is of; that of zero force stands behind the last."""
-    number = row["waypoint"]
-    if not (number.is_integer() and 0 <= number < len(way) + path.zero_force):
-        raise ValueError(f"a state at waypoint {number:g}, which does not exist")
-    if number < len(way) and way[int(number)].stop is None:
-        raise ValueError(f"a state at waypoint {number:g}, which has no stop")
-    if not math.isfinite(row["force"]):
-        raise ValueError(f"a state whose force is {row['force']}")
-    return int(number)
-
-
-def _fields(model: str, text: bytes) -> dict[str, NDArray[np.float64]]:
-    """The fields of a state, by name."""
-    parts = MODELS[model].fields
-    width = max(part.stop for part in parts.values())
-    table = np.loadtxt(text.decode().splitlines(), ndmin=2)
-    if not text.endswith(b"\n") or table.shape[1] != width or not np.isfinite(table).all():
-        raise ValueError(f"fields of shape {table.shape}, cut off or not finite")
-    return {name: table[:, part] for name, part in parts.items()}
-
-
-def _searched(path: Path) -> tuple[float, float] | None:
-    """The ends in zero.txt of solver/path/output.idp."""
-    text = files.read(path, LARGEST_TEXT)
-    if text is None:
-        return None
-    low, high = map(float, text.decode().split())
-    return low, high
 
 
 def _with_diameter(case: Case, solution: Solution) -> Solution:

@@ -22,9 +22,10 @@ from solver.case import Case, digest
 from solver.load_path import LoadPath, Waypoint
 from solver.material import Thread
 from solver.models import MODELS
+from solver.program import composition, flags, includes, waypoint_text
 from solver.record import Solution
 from solver.rubber.mooney_rivlin.law import MooneyRivlin
-from solver.solve import composition, flags, includes, solve, waypoint_text
+from solver.solve import solve
 
 LONGEST = ("test_cell.py", "test_faults.py", "test_rules.py")  # begun first, to end with the rest
 LIMITS = freefem.Limits(wall_time=300, memory=4000)  # a busy machine takes its time

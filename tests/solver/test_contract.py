@@ -13,9 +13,9 @@ from solver.effects import Effects, End, ThreadLaw
 from solver.load_path import Control, Waypoint
 from solver.models import MODELS
 from solver.numerics import Numerics
+from solver.program import composition, flags, includes
 from solver.record import VARIABLES
 from solver.rubber import default
-from solver.solve import composition, flags, includes
 
 SOLVER = Path(solve.__file__).parent
 SHARED = [path for path in SOLVER.rglob("*.?dp") if SOLVER / "rubber" not in path.parents]

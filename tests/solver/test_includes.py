@@ -13,14 +13,14 @@ from pathlib import Path
 
 import pytest
 
-from solver import solve
+from solver import program
 from solver.effects import KINDS
 from solver.models import MODELS
 from solver.rubber import LAWS, default
 from solver.rubber.rubber_law import BY_INVARIANTS
 
 TESTS = Path(__file__).parent / "edp"
-SOLVER = Path(solve.__file__).parent
+SOLVER = Path(program.__file__).parent
 LAW = default().includes()[0]  # the others are held to what its includes define
 PATHS = [p for p in sorted(SOLVER.rglob("*.[ei]dp")) if (SOLVER / "rubber") not in p.parents]
 FILES = {path.name: path.read_text(encoding="utf-8") for path in [*PATHS, *LAW.glob("*.idp")]}
@@ -28,8 +28,8 @@ USERS = FILES | {path.name: path.read_text(encoding="utf-8") for path in TESTS.g
 INCLUDES = [name for name in FILES if name.endswith(".idp")]
 PREFIXES = tuple(f"{name}_" for name, model in MODELS.items() if model.mesh)
 VALUES = "|".join({"none", *(value for kind in KINDS.values() for value in kind)})
-COMPOSING = [solve.composition, *(model.composition for model in MODELS.values())]
-COMPOSED = [  # files that solver/solve.py may write into composition.idp
+COMPOSING = [program.composition, *(model.composition for model in MODELS.values())]
+COMPOSED = [  # files that solver/program.py may write into composition.idp
     re.compile(re.sub(r"\{.*?\}", f"({VALUES})", pattern))
     for pattern in re.findall(r'f"(\w+\{.*?\}\.idp)"', "".join(map(inspect.getsource, COMPOSING)))
 ]

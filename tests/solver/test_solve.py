@@ -8,14 +8,14 @@ import pytest
 
 from geometry.mesh_settings import SectionMesh
 from geometry.seal import seal
-from solver import freefem, solve
+from solver import freefem, output, solve
 from solver.effects import Effects
 from solver.freefem import Limits
 from solver.load_path import LoadPath
 from solver.models import MODELS
 from solver.numerics import Newton, Numerics
+from solver.program import waypoint_text
 from solver.record import VARIABLES
-from solver.solve import waypoint_text
 from solver.status import CaseStatus, StateStatus
 
 LIMITS = Limits(wall_time=60, memory=4000)
@@ -209,11 +209,11 @@ def test_steps_that_may_not_be_small_enough(make_case, solve_case):
 def test_a_torn_last_line_is_no_state(tmp_path, torn):
     table = tmp_path / "states.csv"
     table.write_text(f"contraction,pressure,force\n0,0.3,671.4\n{torn}")
-    assert solve._rows(table) == [{"contraction": 0, "pressure": 0.3, "force": 671.4}]
+    assert output.rows(table) == [{"contraction": 0, "pressure": 0.3, "force": 671.4}]
 
 
 def test_no_table_is_no_state(tmp_path):
-    assert solve._rows(tmp_path / "states.csv") == []
+    assert output.rows(tmp_path / "states.csv") == []
 
 
 def test_waypoints_keep_every_digit(make_case):

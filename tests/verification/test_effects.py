@@ -11,8 +11,8 @@ from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.material import Thread
 from solver.numerics import Numerics, Slack
+from solver.program import composition
 from solver.rubber.mooney_rivlin.law import MooneyRivlin
-from solver.solve import composition
 
 STOPS = (0.0, 0.05, 0.1, 0.15, 0.2)
 CURVE = LoadPath(kind="isobaric", held=0.3, stops=STOPS)
