@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from solver import record
 from solver.record import unreached
 from workflow.analyses.analysis import Solved
 
@@ -49,5 +50,12 @@ def made_up(asked):
         "iterations": np.full(count, chance.integers(2, 9)).astype(float),
         "cutbacks": np.full(count, chance.integers(0, 2)).astype(float),
     }
+    if path.history is not None:
+        states |= {"time": np.array(path.history.times), "work": np.linspace(0, 1e4, count)}
+        states |= {"dissipated": np.linspace(0, 900, count), "energy": np.ones(count)}
+        states["force"] = states["force"] + np.where(np.gradient(swept) < 0, 8.0, 0.0)
+    if case.frequencies:
+        answers = [[f, 10 + np.log10(f), 0.2] for f in case.frequencies]
+        return Solved(asked, converged(states, fields={0: {record.DYNAMIC: np.array(answers)}}))
     fields = {path.stops.index(stop): WALL for stop in case.fields_at if case.model == "solid"}
     return Solved(asked, converged(states, fields=fields, unknowns=1000 * mesh**2))

@@ -128,7 +128,25 @@ def calibration(table):
     ]
 
 
+def time(table):
+    """A loop without a width, one of another sign."""
+    of_pressure = table["set"] == "pressure"
+    table.loc[of_pressure & (table["label"] == "0.5 MPa"), "width"] = np.nan
+    table.loc[of_pressure & (table["label"] == "0.1 MPa"), "width"] = -40.0
+    return [
+        "pressure 0.5 MPa",
+        "1 %/s",
+        "sleeve, contacts 0.2 mm",
+        "measured, another muscle",
+        "three elements",
+        "0.01 Hz",
+        "with memory",
+        "No picture of: both ways",
+    ]
+
+
 SPOIL = {
+    "time": time,
     "robustness": robustness,
     "accuracy": accuracy,
     "effects": effects,

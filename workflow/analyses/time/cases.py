@@ -1,0 +1,88 @@
+"""What time does to the normal condition: hysteresis, working frequency, a mass on a valve.
+
+The rubber has an assumed memory, equal relaxation in every decade from 1 ms to 1000 s, by 6 % of
+the long-term stiffness each: no relaxation test of the rubber of a muscle is known with numbers.
+Loops are the third of three, from rest at their first state.
+"""
+
+from collections.abc import Iterator
+
+from solver.case import Case
+from solver.history import History, Valve, Wave, sampled
+from solver.load_path import LoadPath, PathKind
+from solver.memory import Memory
+from workflow.analyses.analysis import AnalysisCase
+from workflow.study.contents import Study
+
+MUSCLE = "dmsp20"
+MEMORY = Memory.flat(0.06, 1e-3, 1e3)
+PRESSURE, AT = 0.3, 0.1  # MPa, contraction, at which loops are compared
+FURTHEST = 0.2  # contraction, of the loops of force
+RATES = (0.01, 0.1, 1.0)  # of contraction, 1/s
+PRESSURES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)  # MPa
+LOAD, HIGHEST = 200.0, 0.4  # N, MPa, of the loops of contraction
+FREQUENCIES = (0.01, 0.1, 1.0, 10.0)  # Hz
+SAMPLES, CYCLES = 100, 3
+MASS, STEP, DURATION = 5.0, 0.004, 0.8  # kg, s, s
+GRAVITY = 9.80665  # m/s2
+VALVE = Valve(conductance=1e7, critical_ratio=0.3)  # 1 dm3/(s bar)
+VIBRATIONS = tuple(float(f"{10 ** (k / 4):.4g}") for k in range(-8, 9))  # Hz
+
+
+def cases(study: Study) -> list[AnalysisCase]:
+    """Loops of force by rate and pressure, of contraction by frequency; a step; vibrations."""
+    return [*_loops(study), *_steps(study), *_vibrations(study)]
+
+
+def _case(study: Study, model: str, path: LoadPath, *, memory: bool = True, **more: object) -> Case:
+    made = study.muscles[MUSCLE]
+    return Case(
+        muscle=made.muscle,
+        rubber=made.rubber,
+        thread=made.thread,
+        path=path,
+        model=model,
+        memory=MEMORY if memory else None,
+        **more,  # type: ignore[arg-type]
+    )
+
+
+def cycle(kind: PathKind, held: float, end: float, period: float) -> LoadPath:
+    """A triangle from 0 and back, several times."""
+    times, stops = sampled(Wave.TRIANGLE, 0.0, end, period, CYCLES, SAMPLES)
+    return LoadPath(kind=kind, held=held, stops=stops, history=History(times=times, period=period))
+
+
+def _loops(study: Study) -> Iterator[AnalysisCase]:
+    for rate in RATES:
+        path = cycle(PathKind.ISOBARIC, PRESSURE, FURTHEST, 2 * FURTHEST / rate)
+        case = _case(study, "membrane", path, fields_at=(AT,) if rate == RATES[1] else ())
+        tags = {"set": "rate", "pressure": PRESSURE, "rate": rate}
+        yield AnalysisCase(case, f"{100 * rate:g} %/s", tags)
+    for pressure in PRESSURES:
+        path = cycle(PathKind.ISOBARIC, pressure, FURTHEST, 2 * FURTHEST / RATES[1])
+        tags = {"set": "pressure", "pressure": pressure, "rate": RATES[1]}
+        yield AnalysisCase(_case(study, "cylinder", path), f"{pressure:g} MPa", tags)
+    for frequency in FREQUENCIES:
+        path = cycle(PathKind.ISOTONIC, LOAD, HIGHEST, 1 / frequency)
+        tags = {"set": "frequency", "pressure": PRESSURE, "frequency": frequency}
+        yield AnalysisCase(_case(study, "membrane", path), f"{frequency:g} Hz", tags)
+
+
+def _steps(study: Study) -> Iterator[AnalysisCase]:
+    """A hanging mass, whose valve opens."""
+    times = tuple(round(STEP * k, 9) for k in range(round(DURATION / STEP) + 1))
+    history = History(times=times, mass=MASS, valve=VALVE)
+    stops = (0.0, *[PRESSURE] * (len(times) - 1))
+    path = LoadPath(kind=PathKind.ISOTONIC, held=MASS * GRAVITY, stops=stops, history=history)
+    for label, memory in (("without memory", False), ("with memory", True)):
+        case = _case(study, "membrane", path, memory=memory)
+        yield AnalysisCase(case, label, {"set": "step", "pressure": PRESSURE})
+
+
+def _vibrations(study: Study) -> Iterator[AnalysisCase]:
+    for pressure in (0.2, 0.3, 0.4):
+        path = LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=(AT,))
+        case = _case(study, "cylinder", path, frequencies=VIBRATIONS)
+        tags = {"set": "vibration", "pressure": pressure}
+        yield AnalysisCase(case, f"{pressure:g} MPa", tags)

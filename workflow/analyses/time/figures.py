@@ -1,0 +1,135 @@
+"""Figures of time: loops and their width; rates, a step and vibrations; the shape on both ways."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from workflow.analyses import undrawn
+from workflow.analyses.analysis import Solved
+from workflow.analyses.time import sleeve
+from workflow.analyses.time.cases import AT, FREQUENCIES, RATES
+from workflow.analyses.time.table import SLEEVES, widths
+from workflow.figures import curves, style
+
+GAP = (0.66, 0.66)
+LINES = ("-", (0, (5, 2)), (0, (1, 1)))  # of rates, which lie on each other
+ELEMENTS = {"color": "0.45", "linestyle": (0, (4, 2)), "linewidth": 1.1}
+CONTRACTION, PRESSURE, FORCE = "contraction [1]", "pressure [MPa]", "force [N]"
+
+
+def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """All three."""
+    return {
+        "time_loops": loops(tables["time"], tables["time_curves"]),
+        "time_response": response(tables["time_curves"], tables["time_vibrations"]),
+        "time_shape": shape(solved),
+    }
+
+
+def loops(table: pd.DataFrame, found: pd.DataFrame) -> Figure:
+    """A loop; its width along it at three rates; its width against pressure."""
+    figure, axes = style.panels(style.FULL, 2.9, 1, 3, gap=GAP)
+    whole, along, width = axes[0]
+    for k, rate in enumerate(RATES):
+        label = f"{100 * rate:g} %/s"
+        curve = found[(found["set"] == "rate") & (found["label"] == label)]
+        look = style.series(k) | {"marker": "", "linestyle": LINES[k]}
+        if rate == RATES[1]:
+            whole.plot(curve[CONTRACTION], curve[FORCE], color=look["color"])
+        along.plot(*widths(curve), label=label, **look)
+        row = table[(table["set"] == "rate") & (table["label"] == label)]
+        for value in row["three elements, width [N]"].dropna():
+            if value < 20:
+                along.plot([0, 0.2], [value] * 2, label="three elements", **ELEMENTS)
+                along.text(0.2, value, label, ha="right", va="bottom", fontsize=7, color="0.45")
+    whole.set_title(f"third loop, {100 * RATES[1]:g} %/s, 0.3 MPa")
+    whole.set(ylabel="force [N]")
+    along.set_title("its width")
+    along.set(ylabel="width of the loop [N]")
+    for ax in (whole, along):
+        ax.set_xlabel("contraction [%]")
+        style.percent(ax.xaxis)
+    rows = table[table["set"] == "pressure"].sort_values(PRESSURE)
+    width.plot(rows[PRESSURE], rows["width"], label="rubber", color="black", marker="o")
+    for k, name in enumerate(SLEEVES):
+        look = {"color": "#0072b2", "linestyle": ("-", (0, (1, 1)))[k], "marker": ""}
+        contact = sleeve.CONTACTS[k]
+        width.plot(rows[PRESSURE], rows[name], label=f"sleeve, contacts {contact:g} mm", **look)
+    width.axhline(
+        2 * sleeve.MEASURED, color="#d55e00", linewidth=1, label="measured, another muscle"
+    )
+    width.set(xlabel="pressure [MPa]", ylabel="width of the loop [N]")
+    width.set_title(f"width at {100 * AT:g} %")
+    style.legend(figure, style.labelled(axes[:, :2]), style.labelled(axes[:, 2:]))
+    drawn = table[table["set"].isin(["rate", "pressure"])]
+    far = drawn["three elements, width [N]"] >= 20
+    beyond = sorted(set(drawn.loc[far & (drawn["set"] == "rate"), "label"]))
+    text = [
+        undrawn.sentence(undrawn.without_value(drawn, "width", ["set", "label"])),
+        f"Three elements, fitted at {100 * RATES[1]:g} %/s, are beyond 20 N at {', '.join(beyond)}."
+        if beyond
+        else "",
+        "Measured: twice 12.7 N (15.6 kPa) of a 10 mm muscle, whatever its pressure (Hunt 2017).",
+    ]
+    curves.note(figure, " ".join(filter(None, text)))
+    return figure
+
+
+def response(found: pd.DataFrame, answers: pd.DataFrame) -> Figure:
+    """Contraction by pressure under load, after a step of the supply; stiffness and loss factor."""
+    figure, axes = style.panels(style.FULL, 5.2, 2, 2, gap=GAP)
+    (load, step), (stiffness, loss) = axes
+    for k, frequency in enumerate(FREQUENCIES):
+        label = f"{frequency:g} Hz"
+        curve = found[(found["set"] == "frequency") & (found["label"] == label)]
+        look = style.series(k) | {"marker": ""}
+        load.plot(curve[PRESSURE], curve[CONTRACTION], label=label, **look)
+    load.set(xlabel="pressure [MPa]", ylabel="contraction [%]")
+    load.set_title("under 200 N")
+    looks: dict[str, dict[str, Any]] = {
+        "without memory": {"color": "0.45", "linestyle": (0, (4, 2))},
+        "with memory": {"color": "black"},
+    }
+    for label, look in looks.items():
+        curve = found[(found["set"] == "step") & (found["label"] == label)]
+        step.plot(curve["time [s]"], curve[CONTRACTION], label=label, **look)
+    step.set(xlabel="time [s]")
+    step.set_title("5 kg, a valve opens to 0.3 MPa")
+    for ax in (load, step):
+        style.percent(ax.yaxis)
+    for k, (label, rows) in enumerate(answers.groupby("label")):
+        look = style.series(k + 3) | {"markersize": 3}
+        stiffness.plot(rows["frequency [Hz]"], rows["storage [N/mm]"], label=label, **look)
+        loss.plot(rows["frequency [Hz]"], rows["loss factor [1]"], **look)
+    stiffness.set(xscale="log", xlabel="frequency [Hz]", ylabel="K' [N/mm]")
+    stiffness.set_title("storage stiffness at 10 %")
+    loss.set(xscale="log", xlabel="frequency [Hz]", ylabel="K''/K'")
+    loss.set_title("loss factor at 10 %")
+    style.legend(figure, style.labelled(axes))
+    names = undrawn.without_value(found, CONTRACTION, ["set", "label"])
+    text = undrawn.sentence(name for name in names if not name.startswith("rate"))
+    if text:
+        curves.note(figure, text)
+    return figure
+
+
+def shape(solved: Sequence[Solved]) -> Figure:
+    """The inner radius at equal contraction, lengthening less shortening, along the muscle."""
+    figure, axes = style.panels(style.COLUMN_WIDTH, 2.6)
+    ax, drawn = axes[0, 0], False
+    for one in solved:
+        fields = one.solution.fields
+        last = [k for k in sorted(fields) if "meridian" in fields[k]][-2:]
+        if one.asked.tags["set"] != "rate" or len(last) < 2:
+            continue
+        there, back = (fields[k]["meridian"] for k in last)
+        ax.plot(there[:, 3], 1000 * (back[:, 2] - there[:, 2]), color="black")
+        drawn = True
+    ax.axhline(0, color=style.SOFT, linewidth=0.8)
+    ax.set(xlabel="distance from mid-length [mm]", ylabel="difference of radius [µm]")
+    ax.set_title(f"lengthening less shortening, both at {100 * AT:g} %")
+    if not drawn:
+        curves.note(figure, "No picture of: both ways.")
+    return figure
