@@ -30,6 +30,7 @@ from solver.history import Start, Wave
 from solver.load_path import ZERO_FORCE, PathKind
 from solver.models import MODELS
 from solver.numerics import KINDS
+from solver.record import VARIABLES
 from solver.rubber import LAWS, default
 from solver.rubber.rubber_law import Parameter
 from workflow.study.errors import choices, shown
@@ -37,7 +38,7 @@ from workflow.study.values import POSSIBLE, expand, is_possible
 
 # All models are asked what they are.
 DATA = ("solver/models/*/__init__.py", "solver/models/*/model.py")
-LONGEST_NAME = 64
+LONGEST_NAME, LONGEST_TITLE = 64, 200
 NAME = re.compile(rf"[A-Za-z0-9_][A-Za-z0-9_.-]{{0,{LONGEST_NAME - 1}}}")
 NAME_RULE = f"letters, digits, _ . and -, at most {LONGEST_NAME}, not beginning with . or -"
 ASKED = (  # those from stress on are solved for or written only when asked for
@@ -60,6 +61,7 @@ QUANTITIES = {  # models that can give it
     **{name: tuple(MODELS) for name in ZERO_FORCE},
     SHEET: tuple(m for m in MODELS if {"volume", "stiffness"} <= set(MODELS[m].quantities)),
 }
+SHOWN = (*VARIABLES, "load")  # what a figure can show of a state
 REQUIRED = (  # of a design
     "force",
     "stroke",
@@ -459,6 +461,16 @@ class TransientEntry(HistoryEntry):
     step: Positive  # s
 
 
+class FigureEntry(Entry):
+    """How a scene is drawn; left out, what follows against what is swept."""
+
+    x: _one_of(*SHOWN) | None = None
+    y: _one_of(*SHOWN) | None = None
+    by: _one_of("muscle", "held", "variant", "model") = "muscle"  # what colours tell apart
+    compare: _one_of("reference", "none") = "reference"
+    title: Annotated[str, Field(max_length=LONGEST_TITLE)] = ""
+
+
 class Scene(Entry):
     """The cases of one figure; without a path it has none and shows the muscles themselves."""
 
@@ -475,6 +487,7 @@ class Scene(Entry):
     frequency: Values | None = None  # Hz
     tolerance: Annotated[Number, Field(gt=0, lt=1)] | None = None  # share of the largest value
     quantities: _some_of(*QUANTITIES) = ()
+    figure: FigureEntry = FigureEntry()
 
     @property
     def in_time(self) -> bool:

@@ -47,8 +47,9 @@ def content(
 
     ``table`` is that of ``curves``; ``maps`` are the force maps of every muscle, by name; of
     ``tables``, the folder of results/tables, those of claims and deviations are taken if they are
-    there.
+    there. Curves in time are in the dataset only.
     """
+    curves = [curve for curve in curves if not curve.place.scene]
     left_out = OF_SOLVER if len(table.states) > MANY else set()
     quantities = {
         name: table.states[name]

@@ -1,0 +1,105 @@
+"""Any scene has a figure; what it shows is chosen in the scene."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from workflow.data.states import COLUMN, CONTRACTION, FORCE, PRESSURE, SceneData
+from workflow.figures import general, style
+from workflow.figures.labels import SERIES
+from workflow.study.errors import StudyError
+
+from ..synthetic import STUDY, planned, write_records
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """Data of a scene of the small study, with what it says of its figure."""
+
+    def read(name, figure=""):
+        text = STUDY
+        if figure:
+            head = f"  {name}:\n"
+            text = STUDY.replace(head, f"{head}    figure: {figure}\n")
+        plan = planned(tmp_path, text)
+        write_records(plan, tmp_path / "cases")
+        return SceneData.read(plan, name, tmp_path / "cases")
+
+    return read
+
+
+def texts(figure):
+    return [text.get_text() for ax in figure.axes for text in ax.texts] + [
+        text.get_text() for text in figure.texts
+    ]
+
+
+def test_what_follows_stands_against_what_is_swept(scene):
+    table = general.table(scene("curves"))
+    (ax,) = general.draw(table).axes
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("contraction [%]", "force [N]")
+    assert set(table[SERIES]) == {"0.2 MPa", "0.3 MPa"}
+    assert {"membrane", "solid", "festo_musclesim", "martens2017"} == set(table["source"])
+    (ax,) = general.draw(general.table(scene("loads"))).axes
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("pressure [MPa]", "contraction [%]")
+
+
+def test_drawn_numbers_are_those_of_the_states(scene):
+    data = scene("curves")
+    table = general.table(data)
+    states = data.table.joined()
+    for held in (0.2, 0.3):
+        rows = table[(table["source"] == "solid") & (table[PRESSURE] == held)]
+        own = states[(states["model"] == "solid") & (states["held"] == held)]
+        np.testing.assert_array_equal(rows[FORCE], own["force"])
+        np.testing.assert_array_equal(rows[CONTRACTION], own["contraction"])
+
+
+def test_other_quantities_colours_and_a_title(scene):
+    chosen = "{x: volume, y: outer_diameter, by: model, title: Thick}"
+    table = general.table(scene("curves", chosen))
+    figure = general.draw(table)
+    (ax,) = figure.axes
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("volume [mm^3]", "outer diameter [mm]")
+    assert ax.get_title("left") == "Thick"
+    assert set(table["source"]) == {"membrane", "solid"}  # no map has a volume
+    assert len({line.get_color() for line in ax.lines if len(line.get_xdata()) > 2}) == 4
+    assert COLUMN["volume"] in table
+
+
+def test_maps_only_where_they_are_wanted(scene):
+    table = general.table(scene("curves", "{compare: none}"))
+    assert set(table["source"]) == {"membrane", "solid"}
+    isometric = general.table(scene("threshold"))
+    assert "festo_musclesim" in set(isometric["source"])
+
+
+def test_the_same_table_gives_the_same_bytes(scene, tmp_path):
+    table = general.table(scene("few"))
+    for name in ("one.svg", "two.svg"):
+        style.save(general.draw(table), tmp_path / name)
+    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "two.svg").read_bytes()
+
+
+def test_a_scene_that_failed_says_so(scene, tmp_path):
+    data = scene("few")
+    write_records(data.plan, tmp_path / "cases", failed=list(data.plan.scenes["few"].values()))
+    table = general.table(SceneData.read(data.plan, "few", tmp_path / "cases"))
+    table.loc[:, "status"] = "not_reached"
+    assert any("Not drawn" in text for text in texts(general.draw(table)))
+
+
+def test_nonsense_is_refused_with_what_there_is(scene):
+    with pytest.raises(StudyError, match="colour"):
+        scene("curves", "{colour: red}")
+    with pytest.raises(StudyError, match="outer_diameter"):
+        scene("curves", "{y: outer_diametre}")
+    with pytest.raises(StudyError, match="muscle"):
+        scene("curves", "{by: weather}")
+
+
+def test_the_csv_has_what_is_drawn(scene, tmp_path):
+    table = general.table(scene("curves"))
+    table.to_csv(tmp_path / "it.csv", index=False)
+    again = pd.read_csv(tmp_path / "it.csv")
+    np.testing.assert_allclose(again[FORCE], table[FORCE])

@@ -1,0 +1,108 @@
+"""Any scene with a path: one quantity against another, with the force maps of its muscles.
+
+What a scene says under ``figure`` chooses: quantities, what colours tell apart, maps, title. A
+scene that is one of the paper's figures and says nothing there has a module of its own.
+"""
+
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from solver.load_path import PathKind
+from solver.record import VARIABLES
+from workflow.data import reference
+from workflow.data.states import (
+    COLUMN,
+    CONTRACTION,
+    CONTROL,
+    FORCE,
+    PRESSURE,
+    REFERENCE,
+    SUSPECT,
+    reference_at,
+    reference_curves,
+    states,
+)
+from workflow.figures import curves
+from workflow.figures.labels import SERIES, constants, muscles, series
+from workflow.figures.style import COLUMN_WIDTH, look_of, panels, percent
+
+OF_MAP = {CONTRACTION, PRESSURE, FORCE}  # columns that a force map has
+MODEL = "model"  # what curves may be told apart by, beside muscle, variant and the held value
+
+
+def table(data: Any) -> pd.DataFrame:
+    """States of all curves, and those of the maps where a map has what is shown."""
+    kind, chosen = PathKind(data.scene.kind), data.scene.figure
+    held = CONTROL[kind.held.key]
+    x = _column(chosen.x or kind.swept.key)
+    y = _column(chosen.y or kind.follows)
+    frames = [states(data, [name for name in VARIABLES if COLUMN[name] in {x, y}])]
+    if chosen.compare == "reference" and {x, y, held} <= OF_MAP and kind.held.key != "load":
+        frames += _measured(data, kind)
+    every = pd.concat(frames, ignore_index=True)
+    told_apart = {
+        "muscle": ["muscle", held],
+        "held": [held, "muscle"],
+        "variant": ["variant", "muscle", held],
+        "model": [MODEL, "muscle", held],
+    }[chosen.by]
+    every[MODEL] = every["source"].map(lambda source: look_of(source)["label"])
+    every["variant"] = every["variant"].fillna("default")
+    every[SERIES] = series(every, told_apart, apart=False)
+    title = chosen.title or constants(every, ["muscle", held])
+    every.attrs = {"x": x, "y": y, "title": title, "by": chosen.by}
+    return every
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    """All curves in one pair of axes."""
+    x, y = table.attrs["x"], table.attrs["y"]
+    figure, axes = panels(COLUMN_WIDTH, 3.3)
+    ax = axes[0, 0]
+    shown = table[table["status"] != SUSPECT]
+    curves.by_series(ax, shown, x, y)
+    suspect = table[table["status"] == SUSPECT]
+    if len(suspect):
+        ax.plot(suspect[x], suspect[y], "x", color="0.45")
+    low, high = ax.get_ylim()
+    if low < 0 < high:
+        ax.axhline(0, color="black", linewidth=0.7)
+    ax.set_title(table.attrs["title"])
+    for axis, column, say in ((ax.xaxis, x, ax.set_xlabel), (ax.yaxis, y, ax.set_ylabel)):
+        say(_label(column))
+        if column == CONTRACTION:
+            percent(axis)
+    curves.series_legend(figure, shown)
+    text = muscles(table)
+    if len(suspect):
+        text += " Crosses are points of a map that are not used."
+    curves.note_gaps(figure, shown, [SERIES], x, text.strip(), y=y)
+    return figure
+
+
+def _column(name: str) -> str:
+    """The column of a quantity or of a control, a load being a force."""
+    return CONTROL.get(name) or COLUMN[name]
+
+
+def _label(column: str) -> str:
+    """``outer_diameter [mm]`` as on an axis."""
+    if column == CONTRACTION:
+        return "contraction [%]"
+    name, _, unit = column.partition(" [")
+    return name.replace("_", " ") + ("" if unit in {"1]", ""} else f" [{unit}")
+
+
+def _measured(data: Any, kind: PathKind) -> list[pd.DataFrame]:
+    """The maps of every muscle along the path, as rows of its own."""
+    found = []
+    maps = reference.of_muscles({name: m.reference for name, m in data.studied.items()})
+    for muscle, own in maps.items():
+        if kind is PathKind.ISOBARIC:
+            rows = [reference_curves(own.values(), data.scene.held, data.scene.swept)]
+        else:
+            rows = [reference_at(own.values(), e, data.scene.swept) for e in data.scene.held]
+        found += [each.assign(muscle=muscle, status=each["status"]) for each in rows if len(each)]
+    return [each for each in found if (each["status"] == REFERENCE).any()]
