@@ -115,9 +115,11 @@ def look_of(source: str) -> dict[str, Any]:
 
 
 def compared(source: str, number: int = 0) -> dict[str, Any]:
-    """Line of a model in the n-th series; dashes of neighbours fill each other's gaps."""
-    look = COMPARED.get(source, {k: v for k, v in OTHER.items() if k != "color"} | {"marker": ""})
-    if "linestyle" not in look:
+    """Line of a model or map in the n-th series; dashes of neighbours fill each other's gaps."""
+    other = {k: v for k, v in OTHER.items() if k != "color"} | {"marker": ""}
+    of_map = {"linewidth": 0.9, "linestyle": ":", "marker": look_of(source).get("marker", "")}
+    look = COMPARED.get(source, of_map if of_map["marker"] else other)
+    if not isinstance(look.get("linestyle"), tuple):
         return look
     offset, dashes = look["linestyle"]
     return look | {"linestyle": (offset + number % 2 * sum(dashes) / 2, dashes)}

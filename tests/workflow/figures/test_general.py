@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from workflow.__main__ import main
 from workflow.data.states import COLUMN, CONTRACTION, FORCE, PRESSURE, SceneData
 from workflow.figures import general, style
 from workflow.figures.labels import SERIES
@@ -103,3 +104,38 @@ def test_the_csv_has_what_is_drawn(scene, tmp_path):
     table.to_csv(tmp_path / "it.csv", index=False)
     again = pd.read_csv(tmp_path / "it.csv")
     np.testing.assert_allclose(again[FORCE], table[FORCE])
+
+
+@pytest.fixture
+def plot(tmp_path, monkeypatch):
+    """``muscle plot`` in a folder with records."""
+    plan = planned(tmp_path)
+    (tmp_path / "results").mkdir()
+    write_records(plan, tmp_path / "results/cases")
+    monkeypatch.chdir(tmp_path)
+    return lambda *arguments: main(["plot", *arguments, "--study", "study.yaml"])
+
+
+def test_one_curve_from_the_shell(plot, tmp_path, capsys):
+    asked = ("one", "--path", "isobaric", "--held", "0.3", "--model", "solid", "--variant")
+    assert plot(*asked, "default", "--output", "it.csv") == 0
+    assert "it.csv: 1 curves of one" in capsys.readouterr().out
+    rows = pd.read_csv(tmp_path / "it.csv")
+    assert set(rows[PRESSURE]) == {0.3}
+    assert {"solid", "festo_musclesim", "martens2017"} == set(rows["source"])
+    assert plot(*asked, "default", "--y", "volume", "--output", "it.png") == 0
+    assert (tmp_path / "it.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (["two"], "muscle two: no curve of it is solved; there are one"),
+        (["one", "--held", "0.7"], "held 0.7: no isobaric curve of it is solved; there are 0.2"),
+        (["one", "--y", "colour"], "--y colour: no such quantity"),
+        (["one", "--output", "it.pdf"], "--output it.pdf: the ending is .png, .svg, .csv"),
+    ],
+)
+def test_what_cannot_be_plotted(plot, capsys, asked, said):
+    assert plot(*asked) == 1
+    assert said in capsys.readouterr().err
