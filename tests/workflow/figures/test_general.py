@@ -130,7 +130,7 @@ def test_one_curve_from_the_shell(plot, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (["two"], "muscle two: no curve of it is solved; there are one"),
+        (["two"], "muscle two: no curve of it is solved; there are bare, one"),
         (["one", "--held", "0.7"], "held 0.7: no isobaric curve of it is solved; there are 0.2"),
         (["one", "--y", "colour"], "--y colour: no such quantity"),
         (["one", "--output", "it.pdf"], "--output it.pdf: the ending is .png, .svg, .csv"),
