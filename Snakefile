@@ -30,10 +30,11 @@ rule all:
         [f"{RESULTS}/muscles/{muscle}.step" for muscle in PLAN.shown],
         sheets(),
         f"{RESULTS}/dataset.nc",
+        f"{RESULTS}/explorer.html",
         deviations(),
         f"{RESULTS}/complete.txt",
     message:
-        f"All is there: {RESULTS}/figures, {RESULTS}/dataset.nc, {RESULTS}/muscles"
+        f"All is there: {RESULTS}/figures, {RESULTS}/dataset.nc, {RESULTS}/explorer.html"
 
 
 rule everything:

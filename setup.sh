@@ -2,8 +2,17 @@
 # Installs what the pipeline needs: system packages (FreeFEM, a fast BLAS, the libraries gmsh links to) and
 # .venv with the Python packages of requirements.lock. Installs only what is missing; run it as often as you like.
 # PYTHON=/path/to/python3 ./setup.sh chooses the interpreter.
+#   --browser    chromium as well, in which tests open the pages
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
+
+BROWSER=
+for option in "$@"; do
+    case $option in
+        --browser) BROWSER=1 ;;
+        *) printf 'setup.sh: %s: no such option; there is --browser\n' "$option" >&2; exit 1 ;;
+    esac
+done
 
 readonly LOCK=requirements.lock
 readonly STAMP=.venv/complete # written last: .venv is as the lock says
@@ -54,6 +63,7 @@ missing_packages() {
     for pair in $GMSH_LIBRARIES; do
         [[ -n $(library "${pair%%:*}") ]] || printf '%s\n' "${pair##*:}"
     done
+    [[ -z $BROWSER ]] || command -v chromium >/dev/null || printf '%s\n' chromium
     if [[ -z ${PYTHON:-} ]] && ! is_complete && [[ -z $(find_python) ]]; then
         printf '%s\n' python3-venv
     fi

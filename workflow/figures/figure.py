@@ -6,8 +6,8 @@ from pathlib import Path
 from geometry.files import atomic_write
 from workflow.data.states import SceneData
 from workflow.plan.plan import Plan
+from workflow.study import figure_needs
 from workflow.study.errors import StudyError, choices
-from workflow.study.figure_needs import drawn
 
 
 def make(plan: Plan, scene: str, output: Path, *, partial: bool = False) -> None:
@@ -22,10 +22,11 @@ def make(plan: Plan, scene: str, output: Path, *, partial: bool = False) -> None
     """
     if scene not in plan.study.scenes:
         raise StudyError(f"{scene}: no such scene; there are {choices(scene, plan.study.scenes)}")
-    if not drawn(scene):
-        raise StudyError(f"{scene}: no such figure; it would be workflow/figures/{scene}.py")
+    name = figure_needs.module(scene, plan.study.scenes[scene])
+    if not name:
+        raise StudyError(f"{scene}: no figure; it would be workflow/figures/{scene}.py")
     data = SceneData.read(plan, scene, partial=partial)
-    module = importlib.import_module(f"workflow.figures.{scene}")
+    module = importlib.import_module(f"workflow.figures.{name}")
     from workflow.figures import style
 
     table = module.table(data)

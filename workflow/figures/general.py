@@ -27,6 +27,7 @@ from workflow.data.states import (
 from workflow.figures import curves
 from workflow.figures.labels import SERIES, constants, muscles, series
 from workflow.figures.style import COLUMN_WIDTH, look_of, panels, percent
+from workflow.study.schema import FigureEntry
 
 OF_MAP = {CONTRACTION, PRESSURE, FORCE}  # columns that a force map has
 MODEL = "model"  # what curves may be told apart by, beside muscle, variant and the held value
@@ -34,7 +35,7 @@ MODEL = "model"  # what curves may be told apart by, beside muscle, variant and 
 
 def table(data: Any) -> pd.DataFrame:
     """States of all curves, and those of the maps where a map has what is shown."""
-    kind, chosen = PathKind(data.scene.kind), data.scene.figure
+    kind, chosen = PathKind(data.scene.kind), data.scene.figure or FigureEntry()
     held = CONTROL[kind.held.key]
     x = _column(chosen.x or kind.swept.key)
     y = _column(chosen.y or kind.follows)

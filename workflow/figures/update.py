@@ -8,18 +8,18 @@ from solver.case import digest
 from workflow.data import paraview
 from workflow.plan.plan import Plan
 from workflow.run import damage, made
-from workflow.study.figure_needs import drawn
+from workflow.study import figure_needs
 from workflow.study.folders import CASES
 
 
 def scenes(plan: Plan) -> list[str]:
     """Scenes that have a figure; one without is in the dataset only."""
-    return [scene for scene in plan.study.scenes if drawn(scene)]
+    return [name for name, scene in plan.study.scenes.items() if figure_needs.module(name, scene)]
 
 
 def wanted(plan: Plan) -> str:
     """Digest of what all figures and fields are made of but records."""
-    codes = [(scene, sources.digest(_figure_sources(scene))) for scene in scenes(plan)]
+    codes = [(scene, sources.digest(_figure_sources(plan, scene))) for scene in scenes(plan)]
     plans = [plan.digest(scene) for scene in scenes(plan)]
     return digest(repr((codes, plans, paraview.files(plan), sources.digest(_field_sources()))))
 
@@ -34,7 +34,7 @@ def why_drawn(plan: Plan, scene: str, folder: Path) -> str:
     """Why a figure will be drawn; empty if it is there and made of what there is."""
     keys = sorted(set(plan.scenes.get(scene, {}).values()))
     of = _made_of((plan.digest(scene), keys), keys)
-    return _why(_files(scene, folder), _figure_sources(scene), of)
+    return _why(_files(scene, folder), _figure_sources(plan, scene), of)
 
 
 def figures(plan: Plan, scene: str, folder: Path) -> None:
@@ -46,7 +46,7 @@ def figures(plan: Plan, scene: str, folder: Path) -> None:
 
         path = _files(scene, folder)[0]
         figure.make(plan, scene, path)
-        made.note(path, made.keep(_figure_sources(scene)), of)
+        made.note(path, made.keep(_figure_sources(plan, scene)), of)
 
 
 def fields(plan: Plan, folder: Path) -> None:
@@ -67,8 +67,9 @@ def _files(scene: str, folder: Path) -> list[Path]:
     return [folder / "figures" / f"{scene}.{kind}" for kind in ("png", "svg", "csv")]
 
 
-def _figure_sources(scene: str) -> tuple[str, ...]:
-    return tuple(sources.sources("workflow.figures.figure", f"workflow.figures.{scene}"))
+def _figure_sources(plan: Plan, scene: str) -> tuple[str, ...]:
+    module = figure_needs.module(scene, plan.study.scenes[scene])
+    return tuple(sources.sources("workflow.figures.figure", f"workflow.figures.{module}"))
 
 
 def _field_sources() -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Write the dataset and the tables of states, failures and deviations."""
+"""Write the dataset, the tables of states, failures and deviations, and the explorer."""
 
 import argparse
 
@@ -8,6 +8,7 @@ from workflow.analyses.registry import ANALYSES
 from workflow.data import dataset, deviation, records, reference, strain, tidy
 from workflow.data.states import Table
 from workflow.programs import add_study, plan_of, results_of
+from workflow.report.explorer import page
 from workflow.run import failures
 
 
@@ -43,4 +44,6 @@ def run(given: argparse.Namespace) -> int:
         rows = deviation.table(table, reference.of_muscles(named))
         with atomic_write(tables / "deviation.csv") as beside:
             rows.to_csv(beside, index=False, float_format="%.6g")
+    with additions.alone(tables):
+        page.make(plan, study, curves, table, results)
     return 0

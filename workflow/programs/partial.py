@@ -7,10 +7,10 @@ from geometry.files import RESULTS, SEALS
 from solver.status import CaseStatus
 from workflow.data import dataset, records, tidy
 from workflow.data.states import Table
-from workflow.figures import figure
+from workflow.figures import figure, update
 from workflow.programs import add_study, plan_of, results_of
+from workflow.report.explorer import page
 from workflow.run import failures
-from workflow.study import figure_needs
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,9 +29,10 @@ def run(given: argparse.Namespace) -> int:
     dataset.write(tree, folder / "dataset.nc")
     tidy.write(Table.of(curves, muscles), folder / "states.parquet")
     failures.write(plan, solutions, folder / failures.TABLE)
+    page.make(plan, f"{study}, unfinished", curves, Table.of(curves, muscles), folder)
     print(f"{len(solutions) - missing} of {len(solutions)} cases are solved", flush=True)
     drawn, status = 0, 0
-    for scene in filter(figure_needs.drawn, plan.study.scenes):
+    for scene in update.scenes(plan):
         try:
             figure.make(plan, scene, folder / f"figures/{scene}.png", partial=True)
             drawn += 1

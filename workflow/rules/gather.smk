@@ -5,6 +5,7 @@
 #        results/states.parquet         the same states, one row each: workflow/data/tidy.py
 #        results/tables/failures.csv    what did not work out; often a header only
 #        results/tables/deviation.csv   from the maps, of the muscles that these are of
+#        results/explorer.html          a page in which all curves can be looked at
 #        results/complete.txt           if no case failed; else the run ends with an error here
 
 
@@ -16,6 +17,7 @@ rule gather:
         states=f"{RESULTS}/states.parquet",
         failures=f"{RESULTS}/tables/failures.csv",
         deviation=deviations(),
+        explorer=f"{RESULTS}/explorer.html",
     log:
         f"{RESULTS}/logs/gather.log",
     priority: 1

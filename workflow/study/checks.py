@@ -257,9 +257,9 @@ def unusual(source: Source, file: StudyFile, muscles: Mapping[str, StudiedMuscle
             said.setdefault((source.line(keys), made.thread), text)
     yield from said.values()
     for name, asked in file.scenes.items():
-        if re.match(r"fig\w*\d", name, re.IGNORECASE) and not figure_needs.drawn(name):
+        if re.match(r"fig\w*\d", name, re.IGNORECASE) and not figure_needs.has_own(name):
             known_figures = choices(name, figure_needs.NEEDS)
-            yield f"{source.place(('scenes', name))} is not drawn: no figure; {known_figures}"
+            yield f"{source.place(('scenes', name))} has no figure of its own; {known_figures}"
         known = [muscles[m] for m in asked.muscles if m in muscles]
         yield from _unusual_load(source, ("scenes", name, "load"), asked, known)
 

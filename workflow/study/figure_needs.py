@@ -10,6 +10,7 @@ from workflow.study.schema import Scene
 
 FOLDER = Path(__file__).parent.parent / "figures"
 EVERY = tuple(PathKind)
+GENERAL = "general"  # draws any scene with a path
 
 
 @dataclass(frozen=True)
@@ -36,14 +37,24 @@ NEEDS = {  # of the figures of the paper
 }
 
 
-def drawn(scene: str) -> bool:
-    """Whether a scene is drawn as the figure of its name; any other is in the dataset only."""
-    return re.match(r"fig\d", scene) is not None and (FOLDER / f"{scene}.py").exists()
+def module(name: str, scene: Scene) -> str:
+    """Name of the module in workflow/figures that draws a scene; empty if it is in no figure.
+
+    One that is named like a figure is drawn as that, unless it says how it is to be drawn.
+    """
+    if has_own(name) and scene.figure is None:
+        return name
+    return GENERAL if scene.path is not None and not scene.in_time else ""
+
+
+def has_own(name: str) -> bool:
+    """Whether there is a figure of that name."""
+    return re.match(r"fig\d", name) is not None and (FOLDER / f"{name}.py").exists()
 
 
 def lacking(name: str, scene: Scene) -> Iterator[tuple[str, object, str]]:
     """Key, value and what is allowed of all that keeps a scene from being its figure."""
-    needs = NEEDS.get(name) if drawn(name) else None
+    needs = NEEDS.get(name) if module(name, scene) == name else None
     if needs is None:
         return
     if (scene.path or "none") not in (needs.paths or ("none",)):

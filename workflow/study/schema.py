@@ -487,7 +487,7 @@ class Scene(Entry):
     frequency: Values | None = None  # Hz
     tolerance: Annotated[Number, Field(gt=0, lt=1)] | None = None  # share of the largest value
     quantities: _some_of(*QUANTITIES) = ()
-    figure: FigureEntry = FigureEntry()
+    figure: FigureEntry | None = None
 
     @property
     def in_time(self) -> bool:

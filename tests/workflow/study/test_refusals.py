@@ -17,7 +17,7 @@ from workflow.data import bench
 from workflow.plan.plan import Plan, read
 from workflow.study import figure_needs, plain_yaml, units
 from workflow.study.errors import StudyError
-from workflow.study.study import load, study_file
+from workflow.study.study import given_settings, load
 
 from .test_study import STUDY, changed
 
@@ -499,14 +499,14 @@ SCENES = ("curves", "stress", "walls", "states", "style", "labels", "figure", "f
 
 @pytest.mark.parametrize("name", SCENES)
 def test_only_figures_are_figures(tmp_path, name):
-    assert not figure_needs.drawn(name)
+    assert not figure_needs.has_own(name)
     assert isinstance(answer(tmp_path, changed("  fig04:", f"  {name}:")), Plan)
 
 
 def test_every_figure_of_the_paper_says_what_it_needs():
     figures = {path.stem for path in (ROOT / "workflow/figures").glob("fig[0-9]*.py")}
     assert figures >= set(figure_needs.NEEDS) >= {f"fig{n:02}" for n in range(3, 14)}
-    assert all(map(figure_needs.drawn, figures))
+    assert all(map(figure_needs.has_own, figures))
 
 
 UNFIT = [
@@ -549,7 +549,7 @@ def test_two_curves_of_one_name_are_refused(tmp_path):
 def test_a_scene_that_looks_like_a_figure_and_is_none_is_named(tmp_path, name):
     made = answer(tmp_path, changed("  fig04:", f"  {name}:"))
     assert isinstance(made, Plan), made
-    assert any(f"scenes.{name} is not drawn" in line for line in made.study.warnings)
+    assert any(f"scenes.{name} has no figure of its own" in line for line in made.study.warnings)
 
 
 @pytest.mark.parametrize("text", ["", "null", "[1, 2]", "5", "a: 1"])
@@ -618,7 +618,7 @@ def test_a_file_of_forces_that_fits(tmp_path):
 @pytest.mark.parametrize(
     ("given_config", "said"),
     [
-        ({"stduy": "x"}, "allowed: study (nearest: study)"),
+        ({"stduy": "x"}, "allowed: study, batches (nearest: study)"),
         ({"study": 5}, "study = 5 is refused"),
         ({"study": None}, "refused"),
         ({"study": ["a"]}, "refused"),
@@ -627,10 +627,10 @@ def test_a_file_of_forces_that_fits(tmp_path):
 )
 def test_what_a_run_is_told(given_config, said):
     with pytest.raises(StudyError) as caught:
-        study_file(given_config)
+        given_settings(given_config)
     assert said in str(caught.value)
-    assert study_file({}) == "config/config.yaml"
-    assert study_file({"study": "-x.yaml"}) == "./-x.yaml"
+    assert given_settings({}) == ("config/config.yaml", 1)
+    assert given_settings({"study": "-x.yaml"})[0] == "./-x.yaml"
 
 
 def snakemake(folder, *arguments):

@@ -37,7 +37,7 @@ WALL = {  # what a wall is coloured by: unit, long name; in the order of ``_pain
 
 
 def content(
-    title: str,
+    study: str,
     curves: Sequence[Curve],
     table: Table,
     maps: Mapping[str, Mapping[str, ForceMap]],
@@ -58,7 +58,7 @@ def content(
     }
     errors = {name: table.states[f"{name}_error"] for name in WITH_ERROR if name in quantities}
     return {
-        "title": title,
+        "title": f"Pneumatic muscles: {study}",
         "quantities": {
             name: {"unit": OF_STATE[name][0], "label": OF_STATE[name][1]} for name in quantities
         },

@@ -8,11 +8,18 @@ import base64
 import gzip
 import html
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from geometry.files import atomic_write
+from workflow.data import reference
+from workflow.data.records import Curve
+from workflow.data.states import Table
+from workflow.plan.plan import Plan
+from workflow.report.explorer.content import content
 
+FILE = "explorer.html"  # in the folder of the results of a study
 HERE = Path(__file__).parent
 DATA = (
     "workflow/report/explorer/template.html",
@@ -21,13 +28,24 @@ DATA = (
 )
 
 
-def write(output: Path, content: dict[str, Any]) -> None:
+def make(plan: Plan, title: str, curves: Sequence[Curve], table: Table, results: Path) -> None:
+    """Write the page of a study into the folder of its results.
+
+    ``table`` is that of ``curves``. Of tables beside the dataset, those of claims and deviations
+    are shown if they are there.
+    """
+    named = {name: muscle.reference for name, muscle in plan.study.muscles.items()}
+    maps = reference.of_muscles(named)
+    write(results / FILE, content(title, curves, table, maps, results / "tables"))
+
+
+def write(output: Path, shown: dict[str, Any]) -> None:
     """Write the page, whole or not at all; the same content gives the same bytes."""
-    text = json.dumps(content, separators=(",", ":"), allow_nan=False)
+    text = json.dumps(shown, separators=(",", ":"), allow_nan=False)
     packed = base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
     page = _read("template.html")
     parts = {
-        "title": html.escape(str(content["title"])),
+        "title": html.escape(str(shown["title"])),
         "style": _read("vendor/uPlot.min.css") + _read("explorer.css"),
         "chart": _read("vendor/uPlot.iife.min.js"),
         "licence": _read("vendor/LICENSE"),
