@@ -114,7 +114,7 @@ def fit(law: str, tests: Sequence[RubberTest], largest: float = np.inf) -> Fit:
     if count <= size:
         raise StudyError(f"{law} has {size} parameters, and there are {count} points")
     shapes, moduli = _solved(form, used)
-    values = form.fitting.values(shapes, moduli)
+    values = form.fitting.values(shapes, moduli.tolist())
     residuals = {
         test.kind: form.columns(shapes, test.kind, test.stretch) @ moduli - test.stress
         for test in used
@@ -153,7 +153,7 @@ def _solved(form: Form, tests: Sequence[RubberTest]) -> tuple[tuple[float, ...],
         return (), moduli(())[0]
 
     def residuals(shapes: Array) -> Array:
-        return moduli(shapes)[1]
+        return moduli(shapes.tolist())[1]
 
     starts = sorted(
         form.fitting.starts, key=lambda start: float(np.sum(residuals(np.array(start)) ** 2))

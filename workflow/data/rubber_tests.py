@@ -48,7 +48,8 @@ def squares(kind: str, stretch: Array) -> tuple[Array, Array]:
 def stress(law: RubberLaw, kind: str, stretch: Array) -> Array:
     """Nominal stress of an incompressible rubber [MPa]; none through the thickness."""
     a, b = squares(kind, stretch)
-    return 2 * stretch * law.slopes(a, b, np.zeros_like(a))[0]  # type: ignore[arg-type]
+    along: Array = law.slopes(a, b, np.zeros_like(a))[0]  # type: ignore[arg-type]
+    return 2 * stretch * along
 
 
 def read(paths: Sequence[Path], kinds: Sequence[str] = ()) -> tuple[list[RubberTest], list[str]]:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from geometry import section
 from geometry.grading import UnbuildableMesh
@@ -140,7 +141,9 @@ class _Wish:
         path = self.case.path
         stops = path.stops if path.by_way else tuple(sorted(self.stops))
         case = self.case  # most often that of its only scene
-        found = {name: tuple(sorted(getattr(self, name))) for name in ("fields_at", "frequencies")}
+        found: dict[str, Any] = {
+            name: tuple(sorted(getattr(self, name))) for name in ("fields_at", "frequencies")
+        }
         known = path.stops, path.zero_force, case.fields_at, case.frequencies
         if (stops, self.zero_force, *found.values()) != known:
             path = replace(path, stops=stops, zero_force=self.zero_force)
