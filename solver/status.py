@@ -23,7 +23,7 @@ class Flag(StrEnum):
     """What a user should know of a state beside its status; several may hold."""
 
     OVERSTRAINED = "overstrained"  # beyond a limit of the material
-    BEYOND_FIT = "beyond_fit"  # beyond the tests to which the law of the rubber was fitted
+    EXTRAPOLATED = "extrapolated"  # beyond the tests to which the law of the rubber was fitted
     SMOOTHED = "smoothed"  # the smoothing of the slack law carries a share of the force
 
 

@@ -88,7 +88,7 @@ def test_the_vocabulary():
         "no_root",
         "not_asked",
     ]
-    assert [f.value for f in Flag] == ["overstrained", "beyond_fit", "smoothed"]
+    assert [f.value for f in Flag] == ["overstrained", "extrapolated", "smoothed"]
     assert [s.value for s in CaseStatus] == [
         "converged",
         "limit_point",

@@ -119,7 +119,10 @@ class Table:
         unit = headers.OF_PROJECT.get(header.dimension, "")
         finite = values[np.isfinite(values)]
         low, high = (finite.min(), finite.max()) if finite.size else (np.nan, np.nan)
-        given = f"in {header.unit}" if header.unit else f"without a unit, taken as {unit or '1'}"
+        units = {found["unit"] for c in self.texts(quantity) if (found := NUMBER.fullmatch(c))}
+        of_cells = ", ".join(sorted(filter(None, units)))
+        written = header.unit or of_cells
+        given = f"in {written}" if written else f"without a unit, taken as {unit or '1'}"
         name = self.columns[quantity].name
         return f"{quantity}: {name} {given}; {low:.6g} to {high:.6g} {unit}".strip()
 
@@ -310,6 +313,11 @@ def _columns(
         if any(header.quantity for header in read):
             best, units = (number, 1, read), None
     if best is None:
+        if any(headers.read(cell, words).quantity for cell in first[1]):
+            raise StudyError(
+                f"{name}:{first[0]}: numbers stand among the names of columns; a table with a "
+                "column for each pressure is not read: write a row for each point"
+            )
         seen = above[-1][1] if above else []
         there = f"there are {', '.join(map(printable, seen))}" if seen else "there are only numbers"
         raise StudyError(

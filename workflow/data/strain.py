@@ -1,7 +1,7 @@
 """Judges states by what thread and rubber bear (workflow/study/limits.py), when they are gathered.
 
 A state beyond a limit is ``overstrained``, one beyond the tests to which the law of its rubber was
-fitted ``beyond_fit``, and its note says by what. Where no strength of the
+fitted ``extrapolated``, and its note says by what. Where no strength of the
 thread is given, states with threads stretched by more than 5 % have a note and no flag.
 """
 
@@ -59,7 +59,7 @@ def _verdicts(
             said.append(f"threads stretched to {stretch:.3g}; {UNKNOWN}")
         if limits.room and np.isfinite(solution.states["force"][number]):
             said.append(limits.room)
-        flags = {Flag.OVERSTRAINED: beyond, Flag.BEYOND_FIT: outside}
+        flags = {Flag.OVERSTRAINED: beyond, Flag.EXTRAPOLATED: outside}
         yield frozenset(flag for flag, holds in flags.items() if holds), beyond + said
 
 

@@ -42,12 +42,12 @@ OPEN: dict[str, Any] = {
 }
 MARKS: dict[str, dict[str, Any]] = {
     Flag.OVERSTRAINED: {"marker": "x", "markersize": 6, "label": "overstrained"},
-    Flag.BEYOND_FIT: {"marker": "2", "markersize": 8, "label": "beyond its fit"},
+    Flag.EXTRAPOLATED: {"marker": "2", "markersize": 8, "label": "extrapolated"},
     Flag.SMOOTHED: {"marker": "|", "markersize": 9, "label": "smoothed"},
 }
 MEANING = {
     Flag.OVERSTRAINED: "beyond a limit of the material",
-    Flag.BEYOND_FIT: "beyond the stretches to which the law of the rubber was fitted",
+    Flag.EXTRAPOLATED: "beyond the stretches to which the law of the rubber was fitted",
     Flag.SMOOTHED: "the smoothing of slack threads carries a share of the force",
 }
 NO_VALUE, NO_STRESS, NOT_POSITIVE = "no_value", "no_stress", "not_positive"

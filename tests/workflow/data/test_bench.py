@@ -182,6 +182,10 @@ REFUSED = {  # text, what the line says
     "two forces": ("F [N],pressure_MPa,contraction,force_N\n1,0.2,0,1\n", "both 'F \\[N\\]' and"),
     "no header": ("0.2,0,620\n0.2,0.1,251\n", "no line above the numbers names the columns"),
     "unknown headers": ("a,b,c\n0.2,0,620\n0.2,0.1,251\n", "there are a, b, c"),
+    "a column for each pressure": (
+        "contraction [%],1 bar,2 bar\n0,310,620\n5,200,410\n",
+        "forces.csv:1: numbers stand among the names of columns; a table with a column for each",
+    ),
     "no force": (
         "pressure_MPa,contraction,mass\n0.2,0,620\n",
         "the column force is missing; there are 'pressure_MPa', 'contraction', 'mass'",

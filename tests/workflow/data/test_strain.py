@@ -81,7 +81,7 @@ def test_rubber_beyond_its_limit(solved):
 def test_rubber_beyond_the_tests_of_its_law(solved):
     case, solution = solved(1.01, [1.2, 1.5, 1.6, np.nan])
     judged = strain.judged(case, solution, Limits(fitted_range=(1.0, 1.5)))
-    assert [flags == {Flag.BEYOND_FIT} for flags in judged.flags] == [False, False, True, False]
+    assert [flags == {Flag.EXTRAPOLATED} for flags in judged.flags] == [False, False, True, False]
     assert judged.notes == ["", "", "rubber stretch 1.6; its law was fitted up to 1.5", ""]
 
 
