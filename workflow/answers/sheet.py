@@ -19,7 +19,7 @@ from solver.record import Solution
 from workflow.answers.curve import Curve
 from workflow.answers.quick import Quick
 from workflow.answers.store import Store
-from workflow.data import reference
+from workflow.data import bench, reference
 from workflow.plan import model_choice
 from workflow.plan.mesh_error import error
 from workflow.plan.sheet_stops import stops_to
@@ -246,9 +246,8 @@ def _masses(studied: StudiedMuscle) -> dict[str, float | None]:
 
 def _measured(curve: Curve, studied: StudiedMuscle) -> Iterator[Row]:
     """How far the curve is from what was measured at its pressure."""
-    maps = reference.load()
-    for name in studied.reference:
-        points = measured_points(maps[name], curve.pressure)
+    for name, found in bench.of_muscle(studied).items():
+        points = measured_points(found, curve.pressure)
         points = points[points[:, 0] <= curve.contraction[-1]]
         if points.size:
             off = np.mean(curve.force(points[:, 0]) - points[:, 1]) / np.max(points[:, 1])

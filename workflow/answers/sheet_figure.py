@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from workflow.answers.sheet import Sheet, measured_points
-from workflow.data import reference
+from workflow.data import bench
 from workflow.figures.style import FULL, SERIES, labelled, legend, look_of, panels, percent
 from workflow.study.contents import Study
 
@@ -17,15 +17,14 @@ def draw(study: Study, sheets: Sequence[Sheet]) -> Figure:
     """One row: forces on the left, outlines on the right."""
     figure, axes = panels(FULL, 3.4, 1, 2, gap=(0.7, 0.3), width_ratios=[3, 2])
     force, outline = axes[0]
-    maps = reference.load()
     for number, sheet in enumerate(sheets):
         style = SERIES[number % len(SERIES)]
         color = style["color"]
         contraction = np.linspace(0, sheet.curve.contraction[-1], FINE)
         label = f"{sheet.muscle}, {sheet.pressure:g} MPa, {sheet.model}"
         force.plot(contraction, sheet.curve.force(contraction), color=color, label=label)
-        for name in study.muscles[sheet.muscle].reference:
-            points = measured_points(maps[name], sheet.pressure)
+        for name, found in bench.of_muscle(study.muscles[sheet.muscle]).items():
+            points = measured_points(found, sheet.pressure)
             look = look_of(name)
             force.plot(
                 *points.T, color=color, linestyle="none", marker=look.get("marker", "x"),

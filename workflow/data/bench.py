@@ -5,7 +5,7 @@ A file may be written in any usual way (workflow/data/measured.py). Its points a
 the ways up and down, whose distance is the width of the loop.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,8 +17,9 @@ from workflow.data import headers, measured, reference
 from workflow.data.measured import Table
 from workflow.data.reference import CONTRACTIONS, ForceMap
 from workflow.study import checks, user_file
-from workflow.study.contents import Study
+from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError, choices, shown
+from workflow.study.schema import is_path
 from workflow.study.units import PRESSURE
 
 FURTHEST = 0.2  # contraction, as in workflow/data/deviation.py
@@ -54,6 +55,17 @@ class Bench(ForceMap):
     loops: dict[float, float]
 
 
+def of_muscle(muscle: StudiedMuscle) -> dict[str, ForceMap]:
+    """The maps of a muscle by their names: those of this project, and files of one's own."""
+    found = [read(name, muscle.muscle.length) for name in muscle.reference]
+    return {each.name: each for each in found}
+
+
+def of_muscles(muscles: Mapping[str, StudiedMuscle]) -> dict[str, dict[str, ForceMap]]:
+    """The maps of every muscle that has some."""
+    return {name: of_muscle(muscle) for name, muscle in muscles.items() if muscle.reference}
+
+
 def read(name: str, length: float) -> ForceMap:
     """A map by the name of a reference, or by the path of a file (it contains a dot or slash).
 
@@ -70,7 +82,7 @@ def read(name: str, length: float) -> ForceMap:
     if name in maps:
         return maps[name]
     path = Path(name)
-    if not path.suffix and len(path.parts) == 1:
+    if not is_path(name):
         raise StudyError(f"{name}: no such reference map; {choices(name, maps)}, or a .csv file")
     if not user_file.text_of(path, measured.LARGEST).strip():
         raise StudyError(f"{path}: there is no force in it")
@@ -401,7 +413,13 @@ def _share_of_net(study: Study, name: str, found: ForceMap) -> float:
 
 
 def understood(study: Study) -> Iterator[str]:
-    """What was understood of the files of a study's calibrations, in lines."""
+    """What was understood of the files of a study's muscles and calibrations, in lines."""
+    for name, muscle in study.muscles.items():
+        for file in filter(is_path, muscle.reference):
+            found = read(file, muscle.muscle.length)
+            if isinstance(found, Bench):
+                yield f"muscles.{name} reads"
+                yield from (f"  {line}" for line in found.said)
     for name, entry in study.calibration.items():
         assert entry.reference is not None  # the study has named one
         found = read(entry.reference, study.muscles[entry.muscle].muscle.length)
@@ -411,33 +429,45 @@ def understood(study: Study) -> Iterator[str]:
 
 
 def refused(study: Study) -> Iterator[StudyError]:
-    """Calibrations whose forces are not there, or not where they are asked for."""
+    """Muscles and calibrations whose forces are not there, or not where they are asked for."""
+    for name, muscle in study.muscles.items():
+        for file in filter(is_path, muscle.reference):
+            found = _found(study, ("muscles", name, "reference"), file, name)
+            if isinstance(found, StudyError):
+                yield found
     for name in study.calibration:
         yield from _refused(study, name)
 
 
-def _refused(study: Study, name: str) -> Iterator[StudyError]:
-    source, entry, keys = study.source, study.calibration[name], ("calibration", name)
-    place, named = (*keys, "reference"), entry.reference
-    if entry.muscle not in study.muscles or named is None:
-        return  # which the study itself refuses
+def _found(study: Study, place: tuple[str, ...], named: str, muscle: str) -> ForceMap | StudyError:
+    """The forces of a muscle that a place of the study names, or why they are none."""
+    source = study.source
     if set("{}").intersection(named):
         allowed = "a path without { and }, in which Snakemake sees a pattern"
-        yield source.refuse(place, named, allowed)
-        return
+        return source.refuse(place, named, allowed)
     try:
-        found = read(named, study.muscles[entry.muscle].muscle.length)
+        found = read(named, study.muscles[muscle].muscle.length)
     except StudyError as error:
         given = f"{source.place(place)} = {shown(named)} is refused"
-        yield StudyError(f"{given}\n  {error}", source.line(place) or 0, place)
-        return
-    if (share := _share_of_net(study, entry.muscle, found)) and not LEAST < share < MOST:
+        return StudyError(f"{given}\n  {error}", source.line(place) or 0, place)
+    if (share := _share_of_net(study, muscle, found)) and not LEAST < share < MOST:
         guess = "perhaps kN under N" if share < LEAST else "perhaps another unit"
         allowed = (
             f"forces of this muscle; its largest are {share:.2g} of what Eq. (1) pulls with there, "
             f"{guess}"
         )
-        yield source.refuse(place, named, allowed)
+        return source.refuse(place, named, allowed)
+    return found
+
+
+def _refused(study: Study, name: str) -> Iterator[StudyError]:
+    source, entry, keys = study.source, study.calibration[name], ("calibration", name)
+    named = entry.reference
+    if entry.muscle not in study.muscles or named is None:
+        return  # which the study itself refuses
+    found = _found(study, (*keys, "reference"), named, entry.muscle)
+    if isinstance(found, StudyError):
+        yield found
         return
     count = 0
     pressures = ", ".join(f"{p:g}" for p in found.pressures[:12])
@@ -452,9 +482,9 @@ def _refused(study: Study, name: str) -> Iterator[StudyError]:
                     f"pressures within {pressures} MPa; the reference has no force at "
                     f"{pressure:g} MPa between 0 and {100 * FURTHEST:g} %"
                 )
-                at = (*keys, key) if source.has((*keys, key)) else place
+                at = (*keys, key) if source.has((*keys, key)) else (*keys, "reference")
                 yield source.refuse(at, pressure if at[-1] == key else named, allowed)
     if 0 < count <= len(entry.fit):
-        at = (*keys, "fit") if source.has((*keys, "fit")) else place
+        at = (*keys, "fit") if source.has((*keys, "fit")) else (*keys, "reference")
         allowed = f"fewer values than there are forces; {named} has {count} of them here"
         yield source.refuse(at, list(entry.fit), allowed)

@@ -32,7 +32,7 @@ import xarray as xr
 
 import workflow
 from geometry.files import atomic_write
-from workflow.data import in_time, labelled, reference, vibration
+from workflow.data import bench, in_time, labelled, vibration
 from workflow.data.records import Curve
 from workflow.data.reference import ForceMap
 from workflow.data.states import CONTROLS, OF_CURVE, OF_MUSCLE, OF_STATE, Table, attributes
@@ -60,8 +60,9 @@ def build(
     """
     table = Table.of(curves, muscles)
     groups = {**(others or {})}
-    if named := {muscle.reference for muscle in muscles.values()} - {()}:
-        groups["reference"] = _reference(reference.load(sorted(set().union(*named))))
+    if maps := bench.of_muscles(muscles):
+        by_name = {name: found for own in maps.values() for name, found in own.items()}
+        groups["reference"] = _reference(dict(sorted(by_name.items())))
     if effects:
         groups["effects"] = measured_effects()
     groups |= in_time.groups(curves) | vibration.group(curves)

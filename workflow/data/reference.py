@@ -9,7 +9,7 @@ outside its points a map is NaN.
 """
 
 import csv
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -185,11 +185,6 @@ MAPS: dict[str, Callable[[], ForceMap]] = dict(
 def load(names: Iterable[str] = FORCE_MAPS) -> dict[str, ForceMap]:
     """Maps by name; all there are, if none is named."""
     return {name: MAPS[name]() for name in names}
-
-
-def of_muscles(names: Mapping[str, Iterable[str]]) -> dict[str, dict[str, ForceMap]]:
-    """The maps of every muscle that has some, by the names of its own."""
-    return {muscle: load(own) for muscle, own in names.items() if own}
 
 
 def relative_deviation(

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from workflow.data import paper, reference
+from workflow.data import bench, paper, reference
 from workflow.data.states import (
     CONTRACTION,
     FORCE,
@@ -32,7 +32,7 @@ SHOWN = (-0.6, 1.0)  # deviations
 def table(data: Any) -> pd.DataFrame:
     """States of all models and the curves of the maps, with the deviation from one of them."""
     scene, frames = data.scene, [states(data, ["force"])]
-    maps = reference.of_muscles({name: m.reference for name, m in data.studied.items()})
+    maps = bench.of_muscles(data.studied)
     for muscle, own in maps.items():
         measured = reference_curves(own.values(), scene.held, scene.swept)
         frames.append(measured.assign(muscle=muscle))

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from workflow.data import paper, reference
+from workflow.data import bench, paper
 from workflow.data.states import CONTRACTION, FORCE, GOOD, PRESSURE, reference_at, states
 from workflow.figures import curves
 from workflow.figures.labels import constants, shown
@@ -18,7 +18,7 @@ PAPER = "the paper's threshold [MPa]"
 def table(data: Any) -> pd.DataFrame:
     """States of all models, that of zero force among them, and the muscle's force maps."""
     frames = [states(data, ["force"])]
-    maps = reference.of_muscles({name: m.reference for name, m in data.studied.items()})
+    maps = bench.of_muscles(data.studied)
     for muscle, own in maps.items():
         for held in data.scene.held:
             measured = reference_at(own.values(), held, data.scene.swept)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from solver.load_path import PathKind
 from solver.record import VARIABLES
-from workflow.data import reference
+from workflow.data import bench
 from workflow.data.states import (
     COLUMN,
     CONTRACTION,
@@ -99,7 +99,7 @@ def _label(column: str) -> str:
 def _measured(data: Any, kind: PathKind) -> list[pd.DataFrame]:
     """The maps of every muscle along the path, as rows of its own."""
     found = []
-    maps = reference.of_muscles({name: m.reference for name, m in data.studied.items()})
+    maps = bench.of_muscles(data.studied)
     for muscle, own in maps.items():
         if kind is PathKind.ISOBARIC:
             rows = [reference_curves(own.values(), data.scene.held, data.scene.swept)]

@@ -81,6 +81,7 @@ LINES: dict[int, tuple[dict[str, Any], dict[str, Any]]] = {
     3: ({"color": "black", "linewidth": 1.1}, {"linewidth": 1.1}),
 }
 OTHER: dict[str, Any] = {"color": "#7b3294", "linewidth": 1.2, "linestyle": (0, (1, 1))}
+OWN: dict[str, Any] = {"color": "#cc3311", "linewidth": 0.9, "marker": "D"}  # forces of a user
 PLACE = {rank: place for place, rank in enumerate(LINES)}
 OF_MODELS = sorted(MODELS.values(), key=lambda model: PLACE.get(model.rank, len(PLACE)))
 SOURCES: dict[str, dict[str, Any]] = {  # models and reference maps, by name
@@ -110,8 +111,8 @@ SERIES: tuple[dict[str, Any], ...] = (  # muscles, loads, materials compared in 
 
 
 def look_of(source: str) -> dict[str, Any]:
-    """Label, colour and line of a model or reference map; of one without a look, its name."""
-    return SOURCES.get(source, {"label": source, **OTHER})
+    """Label, colour and line of a model or force map; of one without a look, its name."""
+    return SOURCES.get(source, {"label": source, **(OTHER if source in MODELS else OWN)})
 
 
 def compared(source: str, number: int = 0) -> dict[str, Any]:

@@ -113,7 +113,10 @@ class Plan:
         muscles = {place.muscle for place, _ in places}
         asked = None if scene is None else self.study.scenes[scene]
         muscles.update(asked.muscles if asked else ())
-        made_of = [(name, self.study.muscles[name]) for name in sorted(muscles)]
+        made_of = [
+            (name, self.study.muscles[name], self.study.muscles[name].files())
+            for name in sorted(muscles)
+        ]
         return digest(repr((places, made_of, asked)))
 
 

@@ -5,7 +5,7 @@ import argparse
 from geometry.files import atomic_write
 from workflow.analyses import additions
 from workflow.analyses.registry import ANALYSES
-from workflow.data import dataset, deviation, records, reference, strain, tidy
+from workflow.data import bench, dataset, deviation, records, strain, tidy
 from workflow.data.states import Table
 from workflow.programs import add_study, plan_of, results_of
 from workflow.report.explorer import page
@@ -40,8 +40,7 @@ def run(given: argparse.Namespace) -> int:
         failed = additions.failed(tables)
         failures.write(plan, solved, results / failures.TABLE, strained, failed)
     if given.deviation:
-        named = {name: muscle.reference for name, muscle in plan.study.muscles.items()}
-        rows = deviation.table(table, reference.of_muscles(named))
+        rows = deviation.table(table, bench.of_muscles(muscles))
         with atomic_write(tables / "deviation.csv") as beside:
             rows.to_csv(beside, index=False, float_format="%.6g")
     with additions.alone(tables):

@@ -1,6 +1,8 @@
 """What a study file says, once it is read: muscles, variants, scenes and calibrations by name."""
 
+import hashlib
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from geometry.muscle import Muscle
@@ -13,7 +15,7 @@ from solver.numerics import Numerics
 from solver.rubber.rubber_law import RubberLaw
 from workflow.study.installation import Installation
 from workflow.study.limits import Limits
-from workflow.study.schema import CalibrationEntry, DesignEntry, Scene
+from workflow.study.schema import CalibrationEntry, DesignEntry, Scene, is_path
 from workflow.study.source import Source
 
 
@@ -28,7 +30,12 @@ class StudiedMuscle:
     memory: Memory | None = None  # of the rubber, in time
     limits: Limits = field(default_factory=Limits)  # of its materials
     installation: Installation = field(default_factory=Installation)
-    reference: tuple[str, ...] = ()  # names of the force maps that are of this muscle
+    reference: tuple[str, ...] = ()  # force maps that are of this muscle: names, paths of files
+
+    def files(self) -> tuple[tuple[str, str], ...]:
+        """Files of forces that are its own, with a digest of what stands in each."""
+        own = [Path(name) for name in self.reference if is_path(name) and Path(name).is_file()]
+        return tuple((str(file), hashlib.sha256(file.read_bytes()).hexdigest()) for file in own)
 
     def case(self, path: LoadPath, model: str, **others: Any) -> Case:
         """A curve of it by a model; ``others`` are effects, numerics and fields of the case."""

@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import fields
 from itertools import pairwise
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Annotated, Any, Union, get_args
 
 from pydantic import (
@@ -141,6 +142,22 @@ def _some_of(*allowed: str) -> Any:
         return tuple(name for name in allowed if name in names)
 
     return Annotated[tuple[str, ...], BeforeValidator(check)]
+
+
+def _maps(value: object) -> tuple[str, ...]:
+    """Names of force maps and paths of files; the order is that of FORCE_MAPS, then the given."""
+    names = _each_once(value)
+    for name in names:
+        if name not in FORCE_MAPS and not is_path(name):
+            allowed = f"{choices(name, FORCE_MAPS)} or the path of a .csv file"
+            raise refusal(f"{allowed}; not {shown(name)}")
+    known = [name for name in FORCE_MAPS if name in names]
+    return (*known, *(name for name in names if name not in known))
+
+
+def is_path(name: object) -> bool:
+    """Whether what names forces is the path of a file, and no map of this project."""
+    return isinstance(name, str) and bool(PurePath(name).suffix or len(PurePath(name).parts) > 1)
 
 
 def _each_once(value: object) -> list[str]:
@@ -372,7 +389,7 @@ class MuscleEntry(Entry):
     dead_volume: Number | None = None  # mm3
     ambient_pressure: Number | None = None
     material: Name | None = None
-    reference: _some_of(*FORCE_MAPS) | None = None
+    reference: Annotated[tuple[str, ...], BeforeValidator(_maps)] | None = None
     sweep: SweepEntry | None = None
     table: str | None = None  # path of a CSV file
 

@@ -5,9 +5,11 @@ import pandas as pd
 import pytest
 
 from workflow.__main__ import main
+from workflow.data import bench
 from workflow.data.states import COLUMN, CONTRACTION, FORCE, PRESSURE, SceneData
 from workflow.figures import general, style
 from workflow.figures.labels import SERIES
+from workflow.plan.plan import read
 from workflow.study.errors import StudyError
 
 from ..synthetic import STUDY, planned, write_records
@@ -139,3 +141,35 @@ def test_one_curve_from_the_shell(plot, tmp_path, capsys):
 def test_what_cannot_be_plotted(plot, capsys, asked, said):
     assert plot(*asked) == 1
     assert said in capsys.readouterr().err
+
+
+FORCES = "pressure [bar];contraction [%];force [N]\n" + "".join(
+    f"3;{e};{700 - 25 * e}\n" for e in range(0, 20, 2)
+)
+
+
+def test_measured_forces_of_ones_own_stand_beside_the_curves(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.csv").write_text(FORCES)
+    text = STUDY.replace("[festo_musclesim, martens2017]", "mine.csv")
+    plan = planned(tmp_path, text)
+    write_records(plan, tmp_path / "cases")
+    before = plan.digest("curves")
+    table = general.table(SceneData.read(plan, "curves", tmp_path / "cases"))
+    own = table[(table["source"] == "mine") & (table["point"] == "tabulated")]
+    np.testing.assert_allclose(own[CONTRACTION], [0.0, 0.02, 0.04, 0.06, 0.08, 0.1], atol=1e-12)
+    np.testing.assert_allclose(own[FORCE], [700, 650, 600, 550, 500, 450])
+    assert set(own[PRESSURE]) == {0.3}
+    general.draw(table)
+    (tmp_path / "mine.csv").write_text(FORCES.replace("700", "701"))
+    assert plan.digest("curves") != before  # and what is made of it is made again
+
+
+def test_forces_that_are_not_there_or_are_of_no_muscle(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = STUDY.replace("[festo_musclesim, martens2017]", "mine.csv")
+    (tmp_path / "study.yaml").write_text(text)
+    with pytest.raises(StudyError, match=r"(?s)reference = 'mine.csv' is refused.*no such file"):
+        read(tmp_path / "study.yaml", bench.refused)
+    with pytest.raises(StudyError, match=r"or the path of a \.csv file"):
+        planned(tmp_path, STUDY.replace("festo_musclesim", "festo"))

@@ -8,7 +8,7 @@ import shutil
 import numpy as np
 import pytest
 
-from workflow.data import records, reference
+from workflow.data import bench, records
 from workflow.data.states import Table
 from workflow.report.explorer import content, page
 
@@ -27,7 +27,7 @@ def made(tmp_path_factory):
     curves = records.curves_of_study(plan, folder / "cases")
     muscles = plan.study.muscles
     table = Table.of(curves, muscles)
-    maps = reference.of_muscles({name: muscle.reference for name, muscle in muscles.items()})
+    maps = bench.of_muscles(muscles)
     shown = content.content("<one> & more.yaml", curves, table, maps, folder)
     page.write(folder / "explorer.html", shown)
     return folder / "explorer.html", table, shown

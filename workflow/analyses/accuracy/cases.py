@@ -44,6 +44,7 @@ from workflow.plan.effect_costs import MESHES
 from workflow.plan.mesh_error import PART
 from workflow.plan.plan import plan
 from workflow.study.contents import Study
+from workflow.study.schema import is_path
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,8 @@ def _normal(study: Study) -> Iterator[AnalysisCase]:
         numerics, effects = setting.numerics, setting.effects
         curve = ours.case(path, setting.model, effects=effects, numerics=numerics)
         label = f"{setting.model} {setting.name}".strip()
-        tags = setting.tags("curve") | {"maps": " ".join(ours.reference)}
+        maps = " ".join(name for name in ours.reference if not is_path(name))
+        tags = setting.tags("curve") | {"maps": maps}
         yield AnalysisCase(curve, f"{label}, {setting.set}", tags)
         if setting.set == "mesh" and setting.model not in ("geometric", "cell"):
             case = replace(curve, path=threshold)

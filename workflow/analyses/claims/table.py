@@ -16,6 +16,7 @@ from workflow.data import reference
 from workflow.data.records import Curve
 from workflow.data.states import Table
 from workflow.study.contents import StudiedMuscle, Study
+from workflow.study.schema import is_path
 
 
 def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
@@ -46,7 +47,7 @@ def data_of(solved: Sequence[Solved]) -> Data:
         muscles[asked.place.muscle] = asked.muscle
         curves.append(Curve(asked.case, each.solution, asked.case.path.stops, asked.place))
     stresses = [summed_up for curve in curves for summed_up in _stresses(curve)]
-    named = {name for muscle in muscles.values() for name in muscle.reference}
+    named = {n for muscle in muscles.values() for n in muscle.reference if not is_path(n)}
     return Data(
         Table.of(curves, muscles),
         model=MODELS[0],

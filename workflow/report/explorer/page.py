@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from geometry.files import atomic_write
-from workflow.data import reference
+from workflow.data import bench
 from workflow.data.records import Curve
 from workflow.data.states import Table
 from workflow.plan.plan import Plan
@@ -34,8 +34,7 @@ def make(plan: Plan, title: str, curves: Sequence[Curve], table: Table, results:
     ``table`` is that of ``curves``. Of tables beside the dataset, those of claims and deviations
     are shown if they are there.
     """
-    named = {name: muscle.reference for name, muscle in plan.study.muscles.items()}
-    maps = reference.of_muscles(named)
+    maps = bench.of_muscles(plan.study.muscles)
     write(results / FILE, content(title, curves, table, maps, results / "tables"))
 
 
