@@ -201,7 +201,10 @@ def _limits(curve: Curve, studied: StudiedMuscle, last: float) -> Iterator[Row]:
         yield Row("share of the thread's strength", 100 * share, "%", note)
     rubber = curve.largest("rubber_stretch_max", last)
     limit = limits.stretch_limit
-    yield Row("largest rubber stretch", rubber, "1", "deformed by first length")
+    note, fitted = "deformed by first length", limits.fitted_range
+    if fitted is not None and rubber > fitted[1]:
+        note += f"; its law was fitted up to {fitted[1]:g}"
+    yield Row("largest rubber stretch", rubber, "1", note)
     share = rubber / limit if limit else math.nan
     note = f"of {limit:g}" if limit else "no stretch_limit is given"
     yield Row("share of the rubber's limit", 100 * share, "%", note)

@@ -196,7 +196,7 @@ def _fitted(
     source: Source, keys: Keys, entry: CalibrationEntry, made: StudiedMuscle
 ) -> Iterator[StudyError]:
     """What the rubber does not have, and bounds up to which there is none."""
-    own = [EA, *made.rubber.values()]
+    own = [EA, *(each.name for each in made.rubber.parameters() if each.bounds)]
     layers = source.plain["muscles"][source.owner(entry.muscle, "layers")].get("layers") or ()
     if EA in entry.fit and any({EA, "thread_modulus"} & set(layer) for layer in layers):
         allowed = f"of this muscle, {EA} where it is given once, for the muscle and not for a layer"

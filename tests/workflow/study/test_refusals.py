@@ -723,6 +723,17 @@ def test_a_wrong_rubber_is_refused_by_its_key(tmp_path, entry, said):
         assert each in found
 
 
+@pytest.mark.parametrize("number", [3, 4])
+def test_lists_of_terms_are_not_calibrated(tmp_path, number):
+    law = LAWS_WRITTEN[number]
+    key = "mu" if "ogden" in law else "c01"
+    text = changed(NBR, law)
+    text += f"calibration: {{a: {{muscle: one, reference: martens2017, fit: [{key}]}}}}\n"
+    found = refusal(tmp_path, text)
+    assert "calibration.a.fit" in found
+    assert "thread_stiffness" in found
+
+
 def test_the_cell_refuses_ogden(tmp_path):
     text = changed(NBR, LAWS_WRITTEN[4]).replace("[membrane, solid]", "[cell]")
     found = refusal(tmp_path, text.replace(", paper]", "]"))
