@@ -323,7 +323,9 @@ def _thickness(band: Any) -> float:
 
 
 def note(figure: Figure, text: str) -> None:
-    """Small print under a figure, which grows for it."""
+    """Small print under a figure, which grows for it; nothing of no text."""
+    if not text:
+        return
     width = figure.get_size_inches()[0]
     lines = textwrap.wrap(text, int(width * CHARACTERS))
     grow(figure, bottom=NOTE_LINE * (len(lines) + 1))

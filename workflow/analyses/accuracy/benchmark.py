@@ -36,7 +36,7 @@ SETS = ("mesh", "steps", "tolerance")
 # of the cell's meshes), and the power of the refinement with which they grow. Only for saying
 # beforehand what a run will take.
 EXPECTED = {"membrane": (0.15, 0.4), "solid": (0.45, 2.2), "cell": (23.0, 3.0)}
-AROUND = 0.5  # s, Python and the mesh of one solve, there
+AROUND = 0.5  # s, for Python and the mesh of one solve, on that machine
 STATES = 21
 WARM = 5  # repetitions of a model that takes next to nothing
 

@@ -56,7 +56,7 @@ class _Setting:
     name: str  # of the mesh
     numerics: Numerics = field(default_factory=Numerics)
     effects: Effects = field(default_factory=Effects)
-    refinement: float = 0  # in a family of meshes; 0: in none
+    refinement: float = 0  # of the family that an order is observed on; 0: of no family
     stops: tuple[float, ...] = ()
 
     def tags(self, quantity: str) -> dict[str, str | float]:
@@ -175,7 +175,9 @@ def _pair(name: str, case: Case, mesh: MeridianMesh | SectionMesh) -> Iterator[A
     finer = replace(mesh, refinement=2 * mesh.refinement)
     for each in (mesh, finer):
         numerics = _with_mesh(case.numerics, PART[case.model], each)
-        fields = case.fields_at if numerics == case.numerics else ()  # a record that there is
+        fields = (
+            case.fields_at if numerics == case.numerics else ()
+        )  # then it is the record of the scene itself
         setting = _Setting(
             "scenes", case.model, name, numerics, case.effects, refinement=each.refinement
         )

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
-ORDERS = np.linspace(0.5, 8, 1501)  # among which the observed one is sought
+ORDERS = np.linspace(0.5, 8, 1501)  # candidates for the observed order
 SAFETY = 1.25  # of the grid-convergence index with three or more meshes (Roache 1998)
-ASSUMED_ORDER = 2.0  # of a pair of meshes, where none can be observed; the lowest seen is 2.6
+ASSUMED_ORDER = 2.0  # of two meshes, which show no order; families of more show 2.6 or higher
 
 
 @dataclass(frozen=True)

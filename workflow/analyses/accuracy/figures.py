@@ -38,11 +38,11 @@ PART_STYLE: dict[str, dict[str, Any]] = {
     "residual [s]": {"color": "#56b4e9"},
     "rest [s]": {"color": "black"},
 }
-BESIDE = 0.44  # where lines across the panel begin, beside the names of the cheap models
+BESIDE = 0.44  # share of the width where horizontal lines begin, right of the cheap models' names
 MEMORY_TICKS = {30: "30", 50: "50", 100: "100", 200: "200"}
 TIMES = {1e-5: "10 µs", 1e-3: "1 ms", 0.01: "0.01", 0.1: "0.1", 1: "1 s", 10: "10", 60: "1 min"}
 TIMES |= {PAPER[0]: "27 min"}
-TEXT = {  # beside a model: what it is for, and where [points]
+TEXT = {  # at a model's line: what it is for; offset [points] and alignment
     "geometric": ("Eq. (1): trends only", (9, 0), "left"),
     "cylinder": ("cylinder: no end caps;\nfor fits and first sizes", (-9, -3), "right"),
     "membrane": (
@@ -60,7 +60,10 @@ FAMILIES = (  # set, model, colour, marker, what it is
     ("mesh", "solid", "#0072b2", "D", "solid, held gradually"),
     ("butt", "solid", "#d55e00", "s", "solid, bonded sharply"),
 )
-THEORY = {"bare tube, smooth": " (theory: 4)", "membrane": " (theory: 4)"}  # twice the elements'
+THEORY = {
+    "bare tube, smooth": " (theory: 4)",
+    "membrane": " (theory: 4)",
+}  # superconvergence: twice the order of the elements
 
 
 def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:

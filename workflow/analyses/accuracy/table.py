@@ -168,7 +168,7 @@ def _against_pairs(table: pd.DataFrame) -> None:
         case = table.loc[coarse, "_case"]
         force = [s["force"] for s in states]
         if case.path.kind is PathKind.ISOTONIC:
-            # the load is given: the contraction's error, as the force that it is worth
+            # the force is given here: the error of the contraction times the stiffness instead
             length = case.muscle.length
             force = [-s["contraction"] * length * states[0]["stiffness"] for s in states]
             scale = np.array([case.path.held])

@@ -109,7 +109,7 @@ def _residuals(
         parts = []
         for pressure, (stops, expected) in wanted.items():
             force = forward.forces(values, entry.model, pressure, stops)
-            # a state that is not there is as wrong as the largest force
+            # where there is no state the residual is as large as the largest force
             parts.append(np.nan_to_num(force - expected, nan=float(np.max(np.abs(expected)))))
         return np.concatenate(parts)
 

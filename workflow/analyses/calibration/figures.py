@@ -56,9 +56,7 @@ def overview(states: pd.DataFrame) -> Figure:
     for ax in axes[-1]:
         ax.set_xlabel("contraction [%]")
     legend(figure, labelled(axes))
-    text = undrawn.sentence(_missing(states))
-    if text:
-        curves.note(figure, text)
+    curves.note(figure, undrawn.sentence(_missing(states)))
     return figure
 
 

@@ -10,8 +10,8 @@ from scipy.stats import t as student
 
 Array = NDArray[np.float64]
 CONFIDENCE = 0.95
-STEP = 1e-3  # relative, of finite differences: far above the residual at which Newton stops
-CLOSE = 1e-3  # relative distance from a bound at which a value is on it
+STEP = 1e-3  # relative step of finite differences, far above the tolerance of Newton's method
+CLOSE = 1e-3  # relative distance from a bound below which a value counts as stopped by it
 
 
 @dataclass(frozen=True)

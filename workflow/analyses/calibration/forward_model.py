@@ -21,7 +21,7 @@ from workflow.data.states import GOOD, state_rows
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
 
-# Whichever model a calibration names.
+# A calibration may name any model, so all of them are sources.
 DATA = ("geometry/*.py", "solver/**/*.py", "solver/**/*.[ei]dp")
 
 

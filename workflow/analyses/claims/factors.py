@@ -29,8 +29,8 @@ WALLS = {1.5: "dmsp20_t1.5", 2.0: "dmsp20", 2.5: "dmsp20_t2.5", 3.0: "dmsp20_t3"
 SILICONE = {thickness: f"{name}_silicone" for thickness, name in WALLS.items()}
 BEST = 2.0  # mm, where the paper's silicone muscle pulls most
 CONTRACTION, LOAD = 0.1, 200.0
-LINEAR = 0.05  # of the range: what a curve that is called linear may leave its chord by
-ERROR = 0.01  # of the largest force, for the conditioning of a ratio
+LINEAR = 0.05  # largest distance from the chord, as a share of the range, of a curve called linear
+ERROR = 0.01  # share of the largest force by which the ratio's condition is judged
 CLAIMS = Claims()
 
 

@@ -22,7 +22,7 @@ from workflow.analyses.claims.claim import (
 )
 from workflow.data.paper import AT_CONTRACTION, EXCESS, THRESHOLD
 
-STABLE, HIGHEST = 0.2, 0.4  # MPa: from where on the diameter is stable, end of figure 7
+STABLE, HIGHEST = 0.2, 0.4  # MPa: the diameter is stable from here on; the end of figure 7
 LOADS = (100.0, 200.0, 300.0)  # N
 PARTS = (0.0, 0.2, 0.4, 0.6)  # MPa: contraction is fastest in the middle part
 START = 0.1  # MPa: below, the loaded muscle extends

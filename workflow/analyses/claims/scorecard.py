@@ -21,7 +21,7 @@ from workflow.data.states import STOP, Table
 
 MODELS = ("solid", "membrane")  # the fullest first
 SWEPT_MODEL = "membrane"  # of the states with other EA
-SHARE = 0.0025  # of the curve's largest force; the growth of a diameter is as exact
+SHARE = 0.0025  # of the curve's largest force; also of the growth of a diameter
 COPIES, SEED = 8, 20260101
 
 
@@ -124,7 +124,7 @@ def _shifts(table: Table) -> dict[str, pd.Series]:
     largest = rows["force"].abs().where(stops).groupby(curve).transform("max")
     usual = SHARE * largest.mask(of_isotonic, _blocked_force(rows))
     error = rows["force_error"].fillna(usual) if "force_error" in rows else usual
-    # of a state of zero force the pressure moves: by how steep the force is above it
+    # the pressure of zero force moves by the error over the mean slope of the force above it
     highest = rows.loc[of_isometric & stops, "pressure"].max()
     steepness = largest / (highest - rows["pressure"])
     threshold = -error.where(stops).groupby(curve).transform("max") / steepness

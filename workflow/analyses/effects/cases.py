@@ -3,7 +3,8 @@
 Each effect is compared within the fullest model that can be had with and without it: what only the
 solid has, in the solid; what the membrane adds to the cylinder, between these two; single threads
 in the cell, against its smeared layers. The regimes are the normal condition and four corners; each
-is followed at constant pressure, contraction and load, the dear cell at constant pressure only.
+is followed at constant pressure, contraction and load; the cell, which takes minutes for a curve,
+at constant pressure only.
 """
 
 from dataclasses import dataclass, field, replace
@@ -94,19 +95,24 @@ def cases(study: Study) -> list[AnalysisCase]:
         for name, regime in REGIMES.items()
         for path in regime.paths()
         for setup_name, setup in SETUPS.items()
-        if setup.model != "cell" or path.kind is PathKind.ISOBARIC  # it takes too long
+        if setup.model != "cell"
+        or path.kind is PathKind.ISOBARIC  # the cell takes minutes for a curve
     ]
 
 
 def _case(study: Study, regime: Regime, setup: Setup, path: LoadPath) -> Case:
     muscle = study.muscles[regime.muscle]
     numerics = replace(Numerics(), **MESHES[setup.mesh])
-    if regime.stiffness and muscle.thread:  # a stiffer material: the threads have as little room
+    if (
+        regime.stiffness and muscle.thread
+    ):  # of a stiffer fibre, not thicker: thick threads would not fit between the layers
         stiffer = numerics.spread.modulus * regime.stiffness / muscle.thread.stiffness
         numerics = replace(numerics, spread=replace(numerics.spread, modulus=stiffer))
     if setup.model == "geometric" and path.zero_force:
         path = LoadPath(kind=path.kind, held=path.held, stops=path.stops)  # Eq. (1) has none
-    if regime.stiffness and setup.model == "cell":  # a layer slackens further on: slow
+    if (
+        regime.stiffness and setup.model == "cell"
+    ):  # beyond, one layer goes slack and the cell needs very small steps
         path = replace(path, stops=path.stops[:3])
     if regime.stiffness:
         muscle = replace(muscle, thread=Thread(stiffness=regime.stiffness))

@@ -16,7 +16,7 @@ REGIMES = {
     "stiff threads": {"color": "#cc79a7", "marker": "D"},
 }
 NAMES = {"all but pressure on the net": "all but the net (Eq. 1)"}
-SMALLEST = 1e-5  # what is less is drawn there
+SMALLEST = 1e-5  # share; smaller changes are drawn at this one, as the axis is logarithmic
 
 
 def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:

@@ -34,7 +34,7 @@ MESHES = {  # coarse, medium, fine
     2: SectionMesh(refinement=2),
     3: SectionMesh(refinement=3),
 }
-LOW_PRESSURE_MESHES = {  # the slack tube folds in waves of 20 mm
+LOW_PRESSURE_MESHES = {  # several elements per wave: a slack tube folds in waves of 20 mm
     number: SectionMesh(body_step=step)
     for number, step in zip(MESHES, (0.14, 0.1, 0.07), strict=True)
 }
@@ -43,7 +43,7 @@ HYPERCUBE_MESH = SectionMesh(cap_step=0.25, growth=1.25, body_step=0.2)
 
 SEED = 20260101
 SAMPLES = 200
-REPEATED = 10  # every so many-th sample, on a finer mesh
+REPEATED = 10  # every tenth sample is solved again on a finer mesh
 LIMITS = {  # of the hypercube: name -> (low, high, logarithmic)
     "inner_diameter": (8, 50, False),  # mm
     "wall": (0.04, 0.2, False),  # of the diameter

@@ -23,7 +23,7 @@ STATUS: dict[str, dict[str, Any]] = {
     "mesh_failed": {"color": "black", "marker": "s"},
 }
 MESH_MARKS = {1: "o", 2: "s", 3: "D"}
-GOOD_DET, GOOD_MESH = 0.5, 1e-3  # what the named cases are held to
+GOOD_DET, GOOD_MESH = 0.5, 1e-3  # goals for the named cases: det F, and difference between meshes
 WORST = 6
 ENDS = "\n(at the ends: and beyond)"
 OTHER = {"color": "black", "marker": "d"}  # a status without a look
@@ -50,9 +50,7 @@ def overview(table: pd.DataFrame) -> Figure:
     _cube(figure.add_subplot(right[0, 0]), cube)
     _cube_det(figure.add_subplot(right[1, 0]), cube)
     _cube_effort(figure.add_subplot(right[2, 0]), cube)
-    text = _missing(named, cube)
-    if text:
-        curves.note(figure, text)
+    curves.note(figure, _missing(named, cube))
     return figure
 
 

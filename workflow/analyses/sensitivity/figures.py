@@ -69,9 +69,7 @@ def overview(table: pd.DataFrame) -> Figure:
     for ax, analysis in zip(axes[1:, 1], analyses[1:], strict=True):
         ax.set_xlabel(f"share of the variance [%], {analysis}")
     legend(figure, labelled(axes))
-    text = undrawn.sentence(_missing(table))
-    if text:
-        curves.note(figure, text)
+    curves.note(figure, undrawn.sentence(_missing(table)))
     return figure
 
 

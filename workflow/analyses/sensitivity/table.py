@@ -12,15 +12,15 @@ from workflow.analyses.sensitivity.cases import CHECK, STEP, Normal, neighbours
 from workflow.data.states import GOOD
 from workflow.study.contents import Study
 
-SEED, SAMPLES = 20260101, 128  # samples: a power of two, times the number of inputs and two
-RADII = (0.8, 4.0)  # inner radii between which a pressure is looked for
-SHORTEST = 0.5  # axial stretch from which on the free contraction is looked for
+SEED, SAMPLES = 20260101, 128  # base samples, a power of two; SALib runs SAMPLES * (inputs + 2)
+RADII = (0.8, 4.0)  # in initial inner radii: where the radius at a pressure is sought
+SHORTEST = 0.5  # axial stretch, lower end of the search for the free contraction
 Ranges = Mapping[str, float | tuple[float, float]]
-OUTPUTS = {
-    "force": "force at the contraction and pressure",
-    "threshold_pressure": "threshold pressure",
-    "free_contraction": "free contraction",
-}
+OUTPUTS = (
+    "force",
+    "threshold_pressure",
+    "free_contraction",
+)  # force at the contraction and pressure
 UNCERTAIN: Ranges = {  # what is not known of the paper's muscle: share of its value, or ends
     "thread_stiffness": (50.0, 650.0),  # N
     "c10": 0.2,
@@ -30,7 +30,7 @@ UNCERTAIN: Ranges = {  # what is not known of the paper's muscle: share of its v
     "wall_thickness": 0.05,  # 0.1 mm
     "lead": 0.04,  # a tenth of a millimetre between threads
 }
-# Table 1; the contraction without its ends, where there is no threshold or no force
+# of Table 1 of the paper; contraction without its ends, at which threshold or force vanish
 DESIGN: Ranges = {
     "contraction": (0.05, 0.15),
     "pressure": (0.2, 0.4),  # MPa
@@ -89,7 +89,9 @@ def _by_cylinder(normal: Normal, changes: Mapping[str, float]) -> dict[str, floa
 
     lz = 1 - case.path.stops[0]
     found = {"force": force(lz), "threshold_pressure": np.nan, "free_contraction": np.nan}
-    if found["force"] > 0:  # so both zeros lie between here and the slack muscle
+    if (
+        found["force"] > 0
+    ):  # a pulling muscle: it has a threshold below this pressure, and contracts further
         empty = brentq(lambda r: state(r, lz).pressure, RADII[0], radius(lz))
         at = brentq(lambda r: state(r, lz).force, empty, radius(lz))
         found["threshold_pressure"] = state(at, lz).pressure

@@ -19,11 +19,11 @@ from workflow.figures import curves, style
 from workflow.study import fit
 
 Array = NDArray[np.float64]
-HEIGHT = 0.25  # of the cut, in axial spacings: the threads of both layers lie apart there
+HEIGHT = 0.25  # of the cut, in axial spacings: where threads of the two layers do not cross
 CELLS = 3  # drawn beside each other
 ACROSS, THROUGH = 80, 60  # points of a cell that the cut is drawn with
-NEAR_SURFACE = 1e-3  # mm: where the wall begins for an interpolation between nodes
-LEVELS = 16  # about as many shades
+NEAR_SURFACE = 1e-3  # mm from the surface, so that every point lies between nodes
+LEVELS = 16  # approximate number of shades
 WALL = 2.0  # mm, of the panel of changes and of claim C8
 MESH_STYLE: dict[str, dict[str, Any]] = {
     "discrete": {"marker": "o", "linestyle": "-", "label": "threads"},
@@ -162,9 +162,7 @@ def correction(rows: pd.DataFrame) -> Figure:
     axes[1, 1].axhline(0, color="black", linewidth=0.7)
     axes[1, 1].set_ylabel("smallest det F [1]")
     axes[1, 0].legend(fontsize=7.5)
-    text = undrawn.sentence(_missing(rows))
-    if text:
-        curves.note(figure, text)
+    curves.note(figure, undrawn.sentence(_missing(rows)))
     return figure
 
 

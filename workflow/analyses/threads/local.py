@@ -17,7 +17,7 @@ from workflow.data.principal_stress import principal_of_six
 
 Array = NDArray[np.float64]
 BINS = 12  # along a thread, within one cell
-TOGETHER = 1e-3  # mm or share of a side: what is one node
+TOGETHER = 1e-3  # mm, or share of a side: closer corners are one node
 POINTS = 7  # of a lattice along each edge of a tetrahedron
 
 
@@ -29,7 +29,7 @@ def nodes(fields: dict[str, Array], box: Box) -> tuple[Array, Array]:
     """
     corners, stress = fields["corners"], fields["stress"]
     sides = np.array([1, 2 * np.pi / box.sectors, box.spacing])
-    places = corners[:, :3] / sides % [np.inf, 1, 1]  # where periodic images are one
+    places = corners[:, :3] / sides % [np.inf, 1, 1]  # periodic images fall on each other
     # FreeFEM has the corners of P1dc a few millionths inside of their tetrahedron.
     pairs = cKDTree(places, boxsize=[0, 1, 1]).query_pairs(TOGETHER, output_type="ndarray")
     links = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(places), len(places)))
