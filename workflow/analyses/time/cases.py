@@ -54,6 +54,7 @@ def cycle(kind: PathKind, held: float, end: float, period: float) -> LoadPath:
 
 
 def _loops(study: Study) -> Iterator[AnalysisCase]:
+    tags: dict[str, str | float]
     for rate in RATES:
         path = cycle(PathKind.ISOBARIC, PRESSURE, FURTHEST, 2 * FURTHEST / rate)
         case = _case(study, "membrane", path, fields_at=(AT,) if rate == RATES[1] else ())
@@ -84,5 +85,5 @@ def _vibrations(study: Study) -> Iterator[AnalysisCase]:
     for pressure in (0.2, 0.3, 0.4):
         path = LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=(AT,))
         case = _case(study, "cylinder", path, frequencies=VIBRATIONS)
-        tags = {"set": "vibration", "pressure": pressure}
+        tags: dict[str, str | float] = {"set": "vibration", "pressure": pressure}
         yield AnalysisCase(case, f"{pressure:g} MPa", tags)
