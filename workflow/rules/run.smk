@@ -6,6 +6,7 @@ import signal
 
 from snakemake.dag import DAG
 from snakemake.logging import logger
+from snakemake.persistence import PersistenceBase
 from snakemake.settings.enums import Quietness
 
 from solver import freefem
@@ -95,6 +96,13 @@ def look_once():
     workflow.scheduler.job_rate_limiter = None
 
 
+def spare_pandas():
+    """Compare parameters as they are: for those that are data frames, which no rule here has,
+    Snakemake (9.27) imports pandas in every run, a fifth of one with nothing to do.
+    """
+    PersistenceBase._serialize_param = property(lambda self: self._serialize_param_builtin)
+
+
 def interrupted(*_):
     """Ctrl-C: end with one sentence; Snakemake tidies up and is not heard."""
     if not PROGRESS:
@@ -109,6 +117,7 @@ def interrupted(*_):
 
 
 damage.end_future(RESULTS)
+spare_pandas()
 STOPPED = "Stopped. What is solved and drawn stays; the next run goes on from there."
 DAMAGED = notice_damage()
 signal.signal(signal.SIGINT, interrupted)
