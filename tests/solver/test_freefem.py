@@ -18,10 +18,10 @@ LIMITS = Limits(wall_time=30, memory=2000)
 def run(tmp_path):
     """Runs the text of a program; gives its usage."""
 
-    def run_text(text: str, limits: Limits = LIMITS, **flags):
+    def run_text(text: str, limits: Limits = LIMITS, includes=(PATH,), **flags):
         program = tmp_path / "program.edp"
         program.write_text(text)
-        return freefem.run(program, flags, tmp_path, tmp_path / "log", limits)
+        return freefem.run(program, flags, tmp_path, tmp_path / "log", limits, includes)
 
     return run_text
 
@@ -152,6 +152,14 @@ def test_environment_searches_our_includes_first(monkeypatch):
     assert found["FF_LOADPATH"] == "/their/plugins"
     assert found["OMP_NUM_THREADS"] == found["OPENBLAS_NUM_THREADS"] == "1"
     assert found["PATH"] == os.environ["PATH"]
+
+
+def test_a_semicolon_in_a_path_divides_nothing(run, tmp_path):
+    includes = tmp_path / "a;b"
+    includes.mkdir()
+    (includes / "there.idp").write_text("int there = 3;\n")
+    run('include "there.idp"\nofstream out("found.txt"); out << there;', includes=[includes])
+    assert (tmp_path / "found.txt").read_text() == "3"
 
 
 def test_command_is_a_list_without_a_shell():

@@ -376,7 +376,9 @@ def _reference_rows(
     found: ForceMap, contraction: np.ndarray, pressure: np.ndarray, tabulated: np.ndarray
 ) -> pd.DataFrame:
     """Rows of one curve of a map, without those outside it."""
-    force = [float(found.force(e, p)) for e, p in zip(contraction, pressure, strict=True)]
+    force = np.full(pressure.shape, np.nan)
+    for p in np.unique(pressure):
+        force[pressure == p] = found.force(contraction[pressure == p], p)
     rows = pd.DataFrame(
         {
             "source": found.name,

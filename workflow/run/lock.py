@@ -26,12 +26,14 @@ def take(path: Path) -> None:
         If a living process holds the lock, with a message that names it.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    file = path.open("a+")
+    file = path.open("a+", errors="replace")
+    file.seek(0)
+    owner = file.read().strip() or "unknown"
     try:
-        _lock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+        free = _lock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB) or not _writes_here(owner)
     except BlockingIOError:
-        file.seek(0)
-        owner = file.read().strip() or "unknown"
+        free = False
+    if not free:
         sys.exit(f"Another run works in this folder (process {owner}): wait for it or stop it.")
     file.truncate(0)
     file.write(f"{os.getpid()}\n")
@@ -46,8 +48,8 @@ def wait(file: int) -> None:
     _lock(file, fcntl.LOCK_EX)
 
 
-def _lock(file: int, how: int) -> None:
-    """Lock an open file; where the file system has no locks, say so and go on."""
+def _lock(file: int, how: int) -> bool:
+    """Lock an open file; False, and a warning, where the file system has no locks."""
     try:
         fcntl.flock(file, how)
     except OSError as error:
@@ -55,9 +57,11 @@ def _lock(file: int, how: int) -> None:
             raise
         print(
             f"warning: the file system of this folder has no locks ({error.strerror}): let no two "
-            "runs work here at a time",
+            "computers work here at a time",
             file=sys.stderr,
         )
+        return False
+    return True
 
 
 def _end_orphans(lock: str) -> None:
@@ -82,6 +86,7 @@ def tidy(folder: Path) -> None:
 def _writes_here(process: str) -> bool:
     """Whether a process lives and works in this folder; its number may be another's by now."""
     try:
-        return Path("/proc", process, "cwd").readlink() == Path.cwd()
+        there = Path("/proc", process, "cwd").readlink()
+        return there == Path.cwd() and process != str(os.getpid())
     except OSError:
         return False  # gone, or somebody else's
