@@ -3,6 +3,8 @@
 #   in   the table of the analysis, so that its figure has both
 #   out  results/cost.csv               medians of several runs one after the other
 #        results/tables/benchmark.csv   how cost grows
+#        results/tables/times.csv       where the time of whole runs goes: from scratch, with nothing
+#                                       to do, a thousand muscles of one sweep
 #        results/figures/accuracy.png   drawn again with these costs
 #
 # It has no outputs for Snakemake: whoever asks for it wants it measured again.
@@ -20,5 +22,5 @@ rule benchmark:
     message:
         "Measuring what accuracy costs"
     shell:
-        "python -m workflow benchmark --study {params.study:q} 2> >(tee {log:q} >&2)"
+        "python -m workflow benchmark --study {params.study:q} --cores {threads} 2> >(tee {log:q} >&2)"
         " && python -m workflow analysis --study {params.study:q} --name accuracy"

@@ -30,7 +30,9 @@ def take(path: Path) -> None:
     file.seek(0)
     owner = file.read().strip() or "unknown"
     try:
-        free = _lock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB) or not _writes_here(owner)
+        free = _lock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB) or not (
+            owner.isdigit() and _writes_here(owner)
+        )
     except BlockingIOError:
         free = False
     if not free:
