@@ -98,7 +98,7 @@ class Project:
         return {
             name: path.read_bytes()
             for name, path in names.items()
-            if not name.startswith(("logs/", "cost/"))
+            if not name.startswith(("logs/", "cost/", "sources/closures"))
         }
 
     def clear(self):

@@ -292,7 +292,7 @@ if "solve" in sys.orig_argv: os.replace = replace
 @pytest.mark.parametrize("kind", FLAWS)
 def test_what_stops_the_mesher_from_outside_is_tried_again(project, copy, kind):
     for path in (copy.folder / "results").glob("*/*.*"):
-        if b"section" in path.read_bytes() or path.suffix == ".msh":
+        if path.suffix == ".msh" or (path.suffix == ".h5" and b"section" in path.read_bytes()):
             path.unlink()
     customized = copy.folder / "sitecustomize.py"  # programs take modules from their checkout only
     customized.write_text(FLAWED.format(flaw=FLAWS[kind]))

@@ -1,5 +1,6 @@
 """Tasks in processes of their own, so many at a time, some after others."""
 
+import gc
 import os
 import signal
 import time
@@ -36,6 +37,7 @@ def run(tasks: Iterable[Task], cores: int, begins: Callable[[Task], None]) -> It
     """
     waiting, running = list(tasks), dict[int, tuple[Task, float]]()
     unfinished = {task.name for task in waiting}
+    gc.freeze()  # else the first collection in a process copies all that it has of this one: 30 ms
     try:
         while waiting or running:
             ready = next((task for task in waiting if task.after not in unfinished), None)
