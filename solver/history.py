@@ -20,6 +20,7 @@ STANDARD = 0.1  # MPa, of the volumes in a conductance
 MOST_STEPS = 20_000
 TONNE_PER_KG = 1e-3
 LINEAR = 0.999  # ratio of pressures above which the flow goes with their difference
+FIRST, FIRST_GROWTH = 1e-6, 1.2  # of the steps behind a load that came at once, and their growth
 PRELOAD_STEPS = 40  # in a time of preload, each longer than the one before
 
 
@@ -142,6 +143,11 @@ class History:
             raise UnsolvableCase("preload", self.preload, allowed)
         if self.period is not None and not (is_number(self.period) and self.period > 0):
             raise UnsolvableCase("period", self.period, "a finite number > 0 (s)")
+
+    @property
+    def starts_at_once(self) -> bool:
+        """Whether the first state comes at once and is left at once: all branches relax then."""
+        return self.start is Start.UNLOADED and not self.preload
 
     @property
     def moves(self) -> bool:

@@ -14,7 +14,7 @@ from scipy.optimize import OptimizeResult, root
 
 from solver.case import Case
 from solver.effects import Rubber
-from solver.history import AMBIENT, TONNE_PER_KG, Rate, Start
+from solver.history import AMBIENT, FIRST, FIRST_GROWTH, TONNE_PER_KG, Rate, Start
 from solver.judge import judged
 from solver.load_path import Control, Waypoint
 from solver.models.cylinder import curve
@@ -126,7 +126,9 @@ class _Run:
 
     def go_to(self, stop: int) -> bool:
         """Go from the stop before to this one, in as many steps as needed."""
-        times, done, share = self.history.times, 0.0, 1.0
+        times, done, share, growth = self.history.times, 0.0, 1.0, 2.0
+        if stop == 1 and self.history.starts_at_once:
+            share, growth = FIRST, FIRST_GROWTH
         start, end = times[stop - 1], times[stop]
         old = [self._target(kind, stop - 1) for kind in self.kinds]
         new = [self._target(kind, stop) for kind in self.kinds]
@@ -136,7 +138,7 @@ class _Run:
             there = min(done + share, 1.0)
             goal = [a + there * (b - a) for a, b in zip(old, new, strict=True)]
             if self._step((there - done) * (end - start), goal):
-                done, share = there, 2 * share
+                done, share = there, growth * share
             else:
                 share /= 2
                 if share < SHORTEST:
