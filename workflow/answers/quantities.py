@@ -11,7 +11,6 @@ from workflow.study.errors import StudyError, choices, shown
 from workflow.study.values import is_possible
 
 PRESSURE, CONTRACTION, FORCE = "pressure", "contraction", "force"
-HIGHEST = 20.0  # MPa, as in workflow/study/checks.py
 KINDS = (PRESSURE, CONTRACTION, FORCE)
 GRAVITY = Decimal("9.80665")  # N/kg: a mass is the load that hangs from a muscle
 UNITS = {  # of each kind, by size; pressures are those above the pressure around the muscle

@@ -15,16 +15,17 @@ from solver.load_path import LoadPath, PathKind
 from solver.models import MODELS
 from solver.record import Solution
 from solver.status import StateStatus
-from workflow.answers.quantities import CONTRACTION, FORCE, HIGHEST, KINDS, PRESSURE, read
+from workflow.answers.quantities import CONTRACTION, FORCE, KINDS, PRESSURE, read
 from workflow.answers.quick import Quick
 from workflow.answers.store import Store
+from workflow.answers.studies import with_muscle
 from workflow.data.strain import judged
 from workflow.plan import model_choice
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import StudyError, choices
 from workflow.study.folders import DEFAULT
+from workflow.study.limits import HIGHEST
 from workflow.study.schema import Scene
-from workflow.study.study import load
 
 MODEL = "membrane"  # where neither a model nor a tolerance is asked for
 ROUNDS, NEAR = 10, 5e-7  # solves for a pressure, and its last change [MPa]
@@ -101,7 +102,7 @@ def ask(
     StudyError
         If the question makes no sense, or there is no such state.
     """
-    found = study if isinstance(study, Study) else load(study, also=(muscle,))
+    found = study if isinstance(study, Study) else with_muscle(study, muscle)
     return _Question(found, muscle, variant).answer(
         {PRESSURE: pressure, CONTRACTION: contraction, FORCE: force}, model, tolerance
     )

@@ -8,8 +8,8 @@ from solver.load_path import CONTRACTION_LIMITS, LoadPath, PathKind
 from solver.models.cylinder.direct import between, direct
 from solver.models.cylinder.mechanics import Cylinder
 from solver.models.cylinder.observe import observed
-from workflow.answers.quantities import HIGHEST
 from workflow.study.contents import StudiedMuscle
+from workflow.study.limits import HIGHEST
 
 NAME = "cylinder"
 STEP, FIRST, FACTOR = 0.02, 0.05, 1.5  # of contraction; of pressure [MPa], and its growth

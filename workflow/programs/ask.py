@@ -32,11 +32,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """Print the answer."""
     from workflow.answers.question import as_dict, ask, lines
-    from workflow.study.study import load
+    from workflow.answers.studies import with_muscle
 
-    study = load(given.study, also=(given.muscle,))
+    study = with_muscle(given.study, given.muscle)
     asked = {kind: getattr(given, kind) for kind in quantities.KINDS}
-    length = study.muscles[given.muscle].muscle.length if given.muscle in study.muscles else 1.0
+    length = study.muscles[given.muscle].muscle.length
     for text in quantities.split(given.quantities):
         kind, _ = quantities.read(text, length)
         if asked[kind] is not None:

@@ -8,16 +8,15 @@ import argparse
 from pathlib import Path
 
 from workflow.programs import add_study
+from workflow.study import folders
 from workflow.study.errors import StudyError, choices
 from workflow.study.study import load
-
-FOLDER = Path("results/design")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What it is told."""
     parser.add_argument("names", nargs="*", help="designs of the study file; by default all")
-    parser.add_argument("--folder", type=Path, default=FOLDER, help=f"by default {FOLDER}")
+    parser.add_argument("--folder", type=Path, help="by default design in the study's results")
     add_study(parser)
 
 
@@ -36,7 +35,8 @@ def run(given: argparse.Namespace) -> int:
         results = result.designed(study, name)
         for found in results:
             print("\n".join(result.report(found)))
-        output = given.folder / f"{name}.yaml"
+        folder = given.folder or folders.of_study(given.study) / "design"
+        output = folder / f"{name}.yaml"
         result.write(study, name, results, output)
         html_page.write_beside(output, f"Design {name}", "design")
     return 0

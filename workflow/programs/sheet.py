@@ -11,7 +11,7 @@ from pathlib import Path
 from workflow.answers import quantities
 from workflow.programs import add_study
 from workflow.study.errors import StudyError, choices
-from workflow.study.study import load
+from workflow.study.limits import HIGHEST
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,11 +29,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """Print it; status 1 if its balance of energy does not close."""
     from workflow.answers import sheet
+    from workflow.answers.studies import with_muscle
     from workflow.study.schema import QUANTITIES
 
-    study = load(given.study)
+    study = with_muscle(given.study, given.muscle)
     for kind, name, known in (
-        ("muscle", given.muscle, study.muscles),
         ("variant", given.variant, study.variants),
         ("model for sheets", given.model, QUANTITIES["sheet"]),
     ):
@@ -41,8 +41,8 @@ def run(given: argparse.Namespace) -> int:
             raise StudyError(f"{name}: no such {kind}\n  allowed: {choices(name, known)}")
     length = study.muscles[given.muscle].muscle.length
     _, pressure = quantities.read(given.pressure, length, quantities.PRESSURE)
-    if not 0 < pressure <= quantities.HIGHEST:
-        allowed = f"more than 0, at most {quantities.HIGHEST:g} MPa"
+    if not 0 < pressure <= HIGHEST:
+        allowed = f"more than 0, at most {HIGHEST:g} MPa"
         raise StudyError(f"pressure {pressure:g} MPa\n  allowed: {allowed}")
     weight = None
     if given.load is not None:

@@ -2,11 +2,13 @@
 #
 #   in   the records of the study; what its muscles are built into; the reference maps
 #   out  results/sheets/<scene>.html, .png, .svg, .csv and .json
+from solver.case import digest
 from workflow.study.schema import SHEET
 
 
 wildcard_constraints:
     design="|".join(map(re.escape, PLAN.study.design)) or "none",
+    map="|".join(map(re.escape, PLAN.study.maps)) or "none",
     scene="|".join(map(re.escape, PLAN.study.scenes)) or "none",
 
 
@@ -48,23 +50,62 @@ def design_digest(wildcards):
 
 
 rule design_of:
-    input:
-        sources=lambda _: sources("workflow.programs.design"),
     output:
-        multiext("results/design/{design}", ".yaml", ".json", ".csv", ".png", ".svg", ".html"),
+        multiext(
+            f"{RESULTS}/design/{{design}}", ".yaml", ".json", ".csv", ".png", ".svg", ".html"
+        ),
     log:
-        "results/logs/design/{design}.log",
+        f"{RESULTS}/logs/design/{{design}}.log",
     params:
         study=lambda _: STUDY,  # as it is, braces and all
         asked=design_digest,
+        code=lambda _: code("workflow.programs.design"),
+        folder=f"{RESULTS}/design",
     message:
         "Designing {wildcards.design}"
     shell:
-        "python -m workflow design {wildcards.design:q} --study {params.study:q} > {log:q} 2>&1"
+        "python -m workflow design {wildcards.design:q} --study {params.study:q}"
+        " --folder {params.folder:q} > {log:q} 2>&1"
 
 
 rule design:
     input:
-        expand("results/design/{design}.yaml", design=PLAN.study.design),
+        expand(f"{RESULTS}/design/{{design}}.yaml", design=PLAN.study.design),
     message:
         "Designs are in results/design"
+
+
+# Muscles of the study file -> tables of force and volume for controllers and simulators.
+#
+#   in   what the study file says of it; solver/ and workflow/answers/maps/
+#   out  results/maps/<map>.nc    and .csv, .mat, .json (its error), .png, .svg, .html
+def map_digest(wildcards):
+    asked = PLAN.study.maps[wildcards.map]
+    made_of = PLAN.study.muscles[asked.muscle], PLAN.study.variants[asked.variant]
+    return digest(repr((asked, made_of)))
+
+
+rule map_of:
+    output:
+        multiext(
+            f"{RESULTS}/maps/{{map}}", ".nc", ".csv", ".mat", ".json", ".png", ".svg", ".html"
+        ),
+    log:
+        f"{RESULTS}/logs/maps/{{map}}.log",
+    params:
+        study=lambda _: STUDY,  # as it is, braces and all
+        asked=map_digest,
+        code=lambda _: code("workflow.programs.map"),
+        folder=f"{RESULTS}/maps",
+    message:
+        "Making the map {wildcards.map}"
+    shell:
+        "python -m workflow map {wildcards.map:q} --study {params.study:q}"
+        " --folder {params.folder:q} > {log:q} 2>&1"
+
+
+rule maps:
+    input:
+        expand(f"{RESULTS}/maps/{{map}}.nc", map=PLAN.study.maps),
+    message:
+        "Maps are in results/maps"

@@ -14,6 +14,7 @@ from solver.load_path import ZERO_FORCE, LoadPath
 from workflow.study import figure_needs, in_time, units
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError, choices, shown
+from workflow.study.limits import HIGHEST
 from workflow.study.schema import (
     FORCE_MAPS,
     HELD_KEY,
@@ -27,7 +28,6 @@ from workflow.study.schema import (
 from workflow.study.source import Keys, Source
 
 EA = "thread_stiffness"
-HIGHEST = 20.0  # MPa: no pressure of such a muscle
 MOST_CURVES = 10_000  # of a scene: more is a typing error in a grid
 SHORTEST, LONGEST = 0.02, 1e4  # length / inner diameter
 THINNEST, THICKEST = 1e-3, 10.0  # wall / inner diameter
@@ -272,6 +272,7 @@ def _written(file: StudyFile) -> Iterator[tuple[Keys, Any]]:
         "scenes": file.scenes,
         "calibration": file.calibration,
         "design": file.design,
+        "map": file.map,
     }
     for section, entries in sections.items():
         for name, entry in entries.items():

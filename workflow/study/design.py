@@ -7,10 +7,10 @@ from geometry.braid import Braid
 from solver.load_path import CONTRACTION_LIMITS
 from workflow.study.contents import Study
 from workflow.study.errors import StudyError, choices
+from workflow.study.limits import HIGHEST
 from workflow.study.schema import DesignEntry, RequirementEntry
 from workflow.study.source import Keys
 
-HIGHEST = 20.0  # MPa, as in workflow/study/checks.py
 NEEDS = {"force": "contraction", "stroke": "load", "air": "contraction"}  # of a quantity
 TAKES = {  # what a requirement of a quantity may have, beside its limits and a pressure
     "force": ("contraction",),

@@ -123,6 +123,15 @@ def _named(plain: dict[str, Any]) -> Iterator[Entry]:
             yield from _entry_of("muscles", name)
     for entry in _mappings(plain, "calibration"):
         yield from _entry_of("muscles", entry.get("muscle"))
+    for entry in _mappings(plain, "map"):
+        yield from _entry_of("muscles", entry.get("muscle"))
+    for entry in _mappings(plain, "design"):
+        yield from _entry_of("muscles", entry.get("base"))
+        free = entry.get("free")
+        for key, section in (("muscle", "muscles"), ("material", "materials")):
+            listed = free.get(key) if isinstance(free, dict) else None
+            for name in listed if isinstance(listed, list) else [listed]:
+                yield from _entry_of(section, name)
     for entry in _mappings(plain, "muscles"):
         swept = entry.get("sweep")
         for row in (entry, *_rows(entry.get("table"))):

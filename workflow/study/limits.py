@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 
 from geometry.refusal import Refusal, is_number
 
+HIGHEST = 20.0  # MPa: no pressure of such a muscle
+
 
 class UnusableLimit(Refusal):
     """No limit of a material."""

@@ -591,6 +591,19 @@ class DesignEntry(Entry):
     seed: Whole = 1
 
 
+class MapEntry(Entry):
+    """A table of a muscle for controllers and simulators."""
+
+    muscle: Name
+    pressure: Values  # MPa; more are put where the force bends
+    contraction: Values
+    model: _one_of(*QUANTITIES[SHEET]) = "solid"
+    variant: Name = "default"
+    tolerance: Annotated[Number, Field(gt=0)] = 0.1  # N
+    checks: Annotated[Whole, Field(ge=0, le=1000)] = 12  # states at which its error is measured
+    seed: Whole = 1
+
+
 class StudyFile(Entry):
     """The whole file."""
 
@@ -602,3 +615,4 @@ class StudyFile(Entry):
     scenes: dict[Name, Scene]
     calibration: dict[Name, CalibrationEntry] = {}
     design: dict[Name, DesignEntry] = {}
+    map: dict[Name, MapEntry] = {}

@@ -23,7 +23,7 @@ from solver.memory import Memory
 from solver.numerics import KINDS, Numerics, Spread
 from solver.rubber import LAWS
 from solver.rubber.rubber_law import LEAST_KAPPA, RubberLaw
-from workflow.study import checks, design, fit, in_time, layers, sweep, units
+from workflow.study import checks, design, fit, in_time, layers, maps, sweep, units
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices, shown
 from workflow.study.folders import DEFAULT
@@ -141,6 +141,7 @@ def _of(source: Source, findings: Findings | None) -> Study:
         calibration=file.calibration,
         rubbers=rubbers,
         design=file.design,
+        maps=file.map,
         wall_time=file.limits.wall_time,
         memory=file.limits.memory,
         warnings=tuple(checks.unusual(source, file, muscles)),
@@ -155,6 +156,7 @@ def _of(source: Source, findings: Findings | None) -> Study:
             if found.no_more(checks.calibration(study, n))
         },
         design={n: d for n, d in study.design.items() if found.no_more(design.check(study, n))},
+        maps={n: m for n, m in study.maps.items() if found.no_more(maps.check(study, n))},
     )
     if findings is None:
         found.say()

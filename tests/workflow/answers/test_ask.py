@@ -11,6 +11,7 @@ from solver import record
 from workflow import answers
 from workflow.__main__ import main
 from workflow.answers.quick import Quick
+from workflow.study import library
 from workflow.study.errors import StudyError
 from workflow.study.study import load
 
@@ -179,3 +180,15 @@ def test_the_quick_look_is_its_own_inverse(study, pressure, contraction):
     assert quick.pressure(contraction, force) == pytest.approx(pressure, abs=1e-9)
     assert quick.contraction(pressure, force) == pytest.approx(contraction, abs=1e-9)
     assert quick.state(pressure, contraction)["force"] == force
+
+
+def test_a_muscle_of_the_library_needs_no_study(folder, tmp_path, monkeypatch):
+    """Neither one that names it nor, where there is none, any."""
+    name = library.names("muscles")[0]
+    given = {"pressure": "0.3MPa", "contraction": "5%", "model": "cylinder"}
+    monkeypatch.chdir(folder)
+    first = answers.ask(name, **given, study=STUDY)
+    monkeypatch.chdir(tmp_path)
+    assert answers.ask(name, **given).force == first.force
+    with pytest.raises(StudyError, match="no such muscle in library"):
+        answers.ask("nothing", **given)

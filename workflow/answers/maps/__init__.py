@@ -1,0 +1,1 @@
+"""Tables of a muscle for controllers and simulators: ``snakemake --cores 2 maps``."""

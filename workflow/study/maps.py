@@ -1,0 +1,33 @@
+"""What a map must say so that it can be made."""
+
+from collections.abc import Iterator
+
+from solver.load_path import CONTRACTION_LIMITS
+from workflow.study.contents import Study
+from workflow.study.errors import StudyError, choices
+from workflow.study.limits import HIGHEST
+
+FEWEST = 3  # values of a factor, between which cubics mean something
+
+
+def check(study: Study, name: str) -> Iterator[StudyError]:
+    """What is wrong with a map of a study."""
+    source, entry, keys = study.source, study.maps[name], ("map", name)
+    if entry.muscle not in source.names("muscles"):
+        allowed = choices(entry.muscle, source.names("muscles"))
+        yield source.refuse((*keys, "muscle"), entry.muscle, allowed)
+    if entry.variant not in study.variants:
+        allowed = choices(entry.variant, study.variants)
+        yield source.refuse((*keys, "variant"), entry.variant, allowed)
+    for key, low, high, unit in (
+        ("pressure", 0.0, HIGHEST, " (MPa)"),
+        ("contraction", *CONTRACTION_LIMITS, ", as a fraction"),
+    ):
+        values = list(getattr(entry, key))
+        if len(values) < FEWEST:
+            yield source.refuse((*keys, key), values, f"at least {FEWEST} values")
+        elif not low <= values[0] <= values[-1] <= high:
+            yield source.refuse((*keys, key), values, f"values from {low:g} to {high:g}{unit}")
+    if entry.contraction[0] > 0 or entry.contraction[-1] <= 0:
+        allowed = "values from 0 or less to more than 0"
+        yield source.refuse((*keys, "contraction"), list(entry.contraction), allowed)
