@@ -2,7 +2,8 @@
 
 Every curve is a case like any other. A pressure is put between two where a curve solved there is
 further from the map without it than the tolerance, at states that pull; so the grid is refined at
-the pressure at which threads become taut. Contractions are halved all together in the same way. The error is then measured at states off the grid.
+the pressure at which threads become taut. Contractions are halved all together in the same way.
+The error is then measured at states off the grid.
 """
 
 from dataclasses import dataclass
