@@ -27,7 +27,7 @@ scenes: {}
 map:
   quick:
     muscle: dmsp20
-    pressure: [0.08, 0.16, 0.24]
+    pressure: [0.02, 0.1, 0.2]
     contraction: [0, 0.02, 0.04]
     model: cylinder
     tolerance: 0.5
@@ -90,12 +90,13 @@ def test_a_map_of_a_muscle_is_right_between_its_states(built, folder):
     quick = Quick(load(folder / "study.yaml").muscles["dmsp20"])
     made, rng = built.map, np.random.default_rng(5)
     assert built.error <= 0.5
-    assert built.error_near <= 2.5
+    assert 0 < built.error_near <= 2.5
     assert made.contraction.size > 3  # refined
     assert made.pressure.size > 3
     for _ in range(12):
         e = float(rng.uniform(0, 0.04))
-        p = float(rng.uniform(made.pressure_for(1e-6, e) + 0.02, 0.24))
+        threshold = np.nan_to_num(made.pressure_for(1e-6, e), nan=0.02)  # the lowest of the grid
+        p = float(rng.uniform(threshold + 0.02, 0.2))
         state = quick.state(p, e)
         assert made(FORCE, p, e) == pytest.approx(state["force"], abs=0.6)
         assert made(VOLUME, p, e) == pytest.approx(state["volume"], rel=2e-4)
@@ -128,7 +129,7 @@ def test_the_program_writes_it_and_solves_nothing_again(built, folder, monkeypat
     with xr.open_dataset("maps/quick.nc", engine="h5netcdf") as data:
         again = Map.of_dataset(data.load())
         assert data.attrs["force_error_N"] == built.error
-    assert again(FORCE, 0.21, 0.03) == built.map(FORCE, 0.21, 0.03)
+    assert again(FORCE, 0.17, 0.03) == built.map(FORCE, 0.17, 0.03)
     tables = loadmat("maps/quick.mat")
     np.testing.assert_array_equal(tables["force"], built.map.tables["force"])
     lines = Path("maps/quick.csv").read_text().splitlines()
@@ -144,8 +145,8 @@ def test_the_program_writes_it_and_solves_nothing_again(built, folder, monkeypat
     ("change", "said"),
     [
         (("muscle: dmsp20", "muscle: dmsp2"), "nearest: dmsp20"),
-        (("[0.08, 0.16, 0.24]", "[0, 0.3]"), "at least 3 values"),
-        (("[0.08, 0.16, 0.24]", "[0, 0.3, 30]"), "from 0 to 20 (MPa)"),
+        (("[0.02, 0.1, 0.2]", "[0, 0.3]"), "at least 3 values"),
+        (("[0.02, 0.1, 0.2]", "[0, 0.3, 30]"), "from 0 to 20 (MPa)"),
         (("[0, 0.02, 0.04]", "[0.01, 0.02, 0.04]"), "from 0 or less to more than 0"),
         (("model: cylinder", "model: geometric"), "cylinder, membrane, solid"),
         (("tolerance: 0.5", "tolerance: 0"), "0"),
