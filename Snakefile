@@ -23,6 +23,19 @@ include: "workflow/rules/pages.smk"
 include: "workflow/rules/report.smk"
 
 
+# What a cluster is not asked for: light, or made of what has been solved.
+localrules:
+    all,
+    everything,
+    figures,
+    figure,
+    gather,
+    partial,
+    complete,
+    muscle,
+    sheet,
+
+
 rule all:
     default_target: not REPORTING
     input:

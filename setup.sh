@@ -3,18 +3,20 @@
 # .venv with the Python packages of requirements.lock. Installs only what is missing; run it as often as you like.
 # PYTHON=/path/to/python3 ./setup.sh chooses the interpreter.
 #   --browser    chromium as well, in which tests open the pages
+#   --slurm      Snakemake's executor for Slurm as well, which profiles/slurm needs
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-BROWSER=
+BROWSER= SLURM=
 for option in "$@"; do
     case $option in
         --browser) BROWSER=1 ;;
-        *) printf 'setup.sh: %s: no such option; there is --browser\n' "$option" >&2; exit 1 ;;
+        --slurm) SLURM=1 ;;
+        *) printf 'setup.sh: %s: no such option; there are --browser and --slurm\n' "$option" >&2; exit 1 ;;
     esac
 done
 
-readonly LOCK=requirements.lock
+readonly LOCK=requirements.lock SLURM_LOCK=requirements-slurm.lock
 readonly STAMP=.venv/complete # written last: .venv is as the lock says
 
 # Shared libraries that gmsh's wheel loads but does not bring, and the packages that have them.
@@ -125,6 +127,12 @@ $("${PYTHON:-python3}" -V 2>&1 || true). Install one and name it:
     wanted_stamp >"$STAMP"
 }
 
+# Snakemake's executor for Slurm; what it needs has the other lock.
+install_slurm_plugin() {
+    quietly .venv/bin/python -m pip install --disable-pip-version-check --no-input --require-hashes --no-deps \
+        --requirement "$SLURM_LOCK" || die "pip could not install the packages of $SLURM_LOCK"
+}
+
 # The command of this checkout, from whatever folder it is called; -P keeps that folder's modules out.
 write_command() {
     cat >.venv/bin/muscle <<'END'
@@ -140,6 +148,7 @@ mapfile -t missing < <(missing_packages)
 [[ ${#missing[@]} == 0 ]] || install_packages "${missing[@]}"
 is_complete || install_python_packages
 [[ -x .venv/bin/muscle ]] || write_command
+[[ -z $SLURM ]] || install_slurm_plugin
 say "Everything is installed. Next:
     .venv/bin/snakemake --cores 2 smoke    a small study, for a first look
     .venv/bin/snakemake --cores 2          the whole study

@@ -7,11 +7,14 @@ file itself, so that a process that is killed leaves no file that would be taken
 
 import hashlib
 import os
+import re
+import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 RESULTS, SEALS = Path("results"), Path("results/seals")
+HOST = re.sub("[^A-Za-z0-9-]", "-", socket.gethostname())[:64]  # jobs of a cluster share a folder
 
 
 @contextmanager
@@ -33,7 +36,7 @@ def atomic_write(path: Path, *, suffix: str = "", sealed: bool = True) -> Iterat
 def _renamed(path: Path, suffix: str = "") -> Iterator[Path]:
     """A file beside ``path`` that is on the disk before it gets its name."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{os.getpid()}.{path.name}{suffix}")
+    beside = path.with_name(f".{HOST}.{os.getpid()}.{path.name}{suffix}")
     try:
         yield beside
         with beside.open("rb") as file:

@@ -15,9 +15,12 @@ ROOT = Path(__file__).parent.parent
 TOOLS = ["awk", "bash", "dirname", "env", "readlink", "sha256sum"]
 
 
-def locked_versions() -> dict[str, str]:
-    """Versions of requirements.lock by canonical name."""
-    pins = re.findall(r"^([\w.-]+)==([^\s;]+)", (ROOT / "requirements.lock").read_text(), re.M)
+LOCKS = ("requirements.lock", "requirements-slurm.lock")
+
+
+def locked_versions(lock: str = LOCKS[0]) -> dict[str, str]:
+    """Versions of a lock by canonical name."""
+    pins = re.findall(r"^([\w.-]+)==([^\s;]+)", (ROOT / lock).read_text(), re.M)
     return {canonicalize_name(name): version for name, version in pins}
 
 
@@ -33,11 +36,22 @@ def test_lock_holds_a_version_in_range(requirement: Requirement) -> None:
     assert locked_versions()[canonicalize_name(requirement.name)] in requirement.specifier
 
 
-def test_lock_names_no_host_and_hashes_everything() -> None:
-    lock = (ROOT / "requirements.lock").read_text()
+def test_the_lock_for_slurm_has_what_the_extra_adds() -> None:
+    added = locked_versions(LOCKS[1])
+    name = "snakemake-executor-plugin-slurm"
+    assert added.keys() == {name, f"{name}-jobstep"}
+    assert not added.keys() & locked_versions().keys()
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    (wanted,) = map(Requirement, project["optional-dependencies"]["slurm"])
+    assert added[wanted.name] in wanted.specifier
+
+
+@pytest.mark.parametrize("name", LOCKS)
+def test_lock_names_no_host_and_hashes_everything(name: str) -> None:
+    lock = (ROOT / name).read_text()
     assert "://" not in lock
     entries = re.split(r"\n(?=\w)", lock[lock.index("\n", lock.rindex("\n#") + 1) + 1 :])
-    assert len(entries) == len(locked_versions())
+    assert len(entries) == len(locked_versions(name))
     assert all("--hash=sha256:" in entry for entry in entries)
 
 

@@ -93,7 +93,8 @@ def look_once():
     So does Snakemake (9.27) to start at most 100 jobs a second, which no run here does: of a run of
     67 jobs it takes a fifth of the processor time.
     """
-    workflow.scheduler.job_rate_limiter = None
+    if workflow.local_exec:  # a cluster's limit is the user's
+        workflow.scheduler.job_rate_limiter = None
 
 
 def spare_pandas():

@@ -27,6 +27,7 @@ rule solve:
     resources:
         wall_time=PLAN.study.wall_time,
         memory=PLAN.study.memory,
+        mem_mb=lambda _, threads: threads * PLAN.study.memory,  # of the job, for a cluster
     params:
         study=lambda _: STUDY,  # as it is, braces and all
         asked=lambda wildcards: program_option(wildcards.asked),

@@ -4,13 +4,19 @@ import errno
 import fcntl
 import os
 import re
+import shutil
 import signal
+import subprocess
 import sys
 from pathlib import Path
 from typing import TextIO
 
+from geometry.files import HOST
+
 MARK = "MUSCLE_RUN"  # environment variable of all that a run starts: the lock it holds
+PREFIX = "muscle_"  # of the names of a run's jobs on a cluster (profiles/slurm)
 NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP}
+ANSWER = 10.0  # s, for a cluster's programs
 _held: list[TextIO] = []  # open files: a lock lives as long as its file is open in a living process
 
 
@@ -43,6 +49,7 @@ def take(path: Path) -> None:
     _held.append(file)
     os.environ[MARK] = str(path.resolve())
     _end_orphans(os.environ[MARK])
+    _cancel_orphans()
 
 
 def wait(file: int) -> None:
@@ -77,10 +84,33 @@ def _end_orphans(lock: str) -> None:
             continue  # ended, or somebody else's
 
 
+def _cancel_orphans() -> None:
+    """End jobs of a cluster that outlived the run which began them in this folder."""
+    if shutil.which("squeue") is None or shutil.which("scancel") is None:
+        return
+    asked = ["squeue", "--me", "--noheader", "--format=%i|%j|%Z"]
+    try:
+        said = subprocess.run(asked, capture_output=True, text=True, timeout=ANSWER, check=True)
+        jobs = [line.split("|", 2) for line in said.stdout.splitlines() if line.count("|") > 1]
+        here = [job for job, name, folder in jobs if name.startswith(PREFIX) and _is_here(folder)]
+        if here:
+            print(f"Cancelling {len(here)} jobs of a run that was killed", file=sys.stderr)
+            subprocess.run(["scancel", *here], timeout=ANSWER, check=True, capture_output=True)
+    except (OSError, subprocess.SubprocessError) as error:
+        print(f"warning: jobs of a killed run cannot be looked for ({error})", file=sys.stderr)
+
+
+def _is_here(folder: str) -> bool:
+    try:
+        return Path(folder).samefile(Path.cwd())
+    except OSError:
+        return False
+
+
 def tidy(folder: Path) -> None:
-    """Delete files that processes which are gone were writing beside their place."""
+    """Delete files that processes of this machine were writing, which are gone by now."""
     for path in folder.rglob(".*"):
-        writer = re.search(r"\.(\d+)(\.|$)", path.name)
+        writer = re.match(rf"\.{re.escape(HOST)}\.(\d+)\.", path.name)
         if writer and path.is_file() and not _writes_here(writer[1]):
             path.unlink(missing_ok=True)
 

@@ -1,0 +1,134 @@
+"""Batches on a cluster: a real Slurm of one node; and what a cluster means for a shared folder."""
+
+import contextlib
+import importlib.util
+import os
+import signal
+import subprocess
+import time
+
+import pytest
+import yaml
+
+from geometry.files import HOST, atomic_write
+from workflow.run import lock
+
+from .project import ROOT
+from .slurm import Cluster, install
+from .test_faults import fake
+
+PROFILE = "profiles/slurm"
+SOON = ("--slurm-init-seconds-before-status-checks", "1", "--seconds-between-status-checks", "1")
+RUN = ("--profile", PROFILE, *SOON, "--config", "batches=2")
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    """A cluster; it takes root to begin one, and where root is it must begin."""
+    if os.geteuid() != 0:
+        pytest.skip("only root can begin a cluster")
+    assert importlib.util.find_spec("snakemake_executor_plugin_slurm"), "./setup.sh --slurm"
+    install()
+    folder = tmp_path / "slurm"
+    folder.mkdir()
+    with Cluster(folder) as made:
+        yield made
+
+
+@pytest.fixture
+def on_cluster(project, cluster, tmp_path):
+    """A project in which nothing has run yet."""
+    copy = project.copy(tmp_path / "project")
+    copy.clear()
+    return copy
+
+
+def test_killed_cancelled_and_resumed_the_bytes_are_those_of_one_machine(
+    project, cluster, on_cluster, tmp_path
+):
+    """The run is killed while a job lives; the next ends that job and its own one is cancelled."""
+    hanging = fake(tmp_path, membrane="sleep 600", solid="sleep 600")
+    run = on_cluster.start(*RUN, path=hanging, program=("snakemake",))
+    first = cluster.wait_for_job()
+    os.killpg(run.pid, signal.SIGKILL)
+    run.communicate()
+    assert first in cluster.jobs("RUNNING")
+
+    run = on_cluster.start(*RUN, path=hanging, program=("snakemake",))
+    deadline = time.monotonic() + 90
+    while first in cluster.jobs("RUNNING"):
+        assert time.monotonic() < deadline
+        time.sleep(0.2)
+    while not (running := set(cluster.jobs("RUNNING")) - {first}):
+        assert time.monotonic() < deadline
+        time.sleep(0.2)
+    time.sleep(1)
+    while run.poll() is None:
+        running |= set(cluster.jobs("RUNNING"))
+        for job in running:
+            cluster.run("scancel", job)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            run.wait(2)
+    output, _ = run.communicate()
+    assert run.returncode == 1, output
+    assert "of a run that was killed" in output
+    assert "Traceback" not in output
+
+    status, output = on_cluster.run(*RUN, program=("snakemake",))
+    assert status == 0, output
+    assert "Traceback" not in output
+    assert "5 of 5 cases solved, 0 failed" in output
+    found, expected = (
+        {name: content for name, content in p.items() if not name.startswith("solved/")}
+        for p in (on_cluster.results(), project.undisturbed)
+    )
+    assert found.keys() == expected.keys()
+    assert [name for name in found if found[name] != expected[name]] == []
+    assert cluster.jobs("RUNNING") == []
+
+
+def test_jobs_are_named_as_the_lock_looks_for_them():
+    profile = yaml.safe_load((ROOT / PROFILE / "config.yaml").read_text())
+    assert profile["slurm-jobname-prefix"] + "_" == lock.PREFIX
+
+
+def test_what_another_machine_writes_is_let_alone(tmp_path):
+    """A number of a process says nothing about another machine's."""
+    (tmp_path / ".elsewhere.4194304.a.h5").touch()  # that number is nobody's
+    (tmp_path / f".{HOST}.4194304.a.h5").touch()
+    (tmp_path / ".keep").touch()
+    lock.tidy(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {".elsewhere.4194304.a.h5", ".keep"}
+
+
+def test_what_is_being_written_here_is_let_alone(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with atomic_write(tmp_path / "a.h5") as beside:
+        beside.touch()
+        lock.tidy(tmp_path)
+        assert beside.exists()
+
+
+SQUEUE = """\
+#!/bin/sh
+echo "1|muscle_12ab|$PWD"
+echo "2|muscle_34cd|/somewhere/else"
+echo "3|mine|$PWD"
+"""
+
+
+def test_jobs_of_a_killed_run_are_cancelled_those_of_this_folder_only(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    programs = {"squeue": SQUEUE, "scancel": '#!/bin/sh\necho "$@" >> cancelled\n'}
+    for name, text in programs.items():
+        (tmp_path / name).write_text(text)
+        (tmp_path / name).chmod(0o755)
+    lock._cancel_orphans()
+    assert (tmp_path / "cancelled").read_text() == "1\n"
+    assert "Cancelling 1 jobs of a run that was killed" in capsys.readouterr().err
+    (tmp_path / "squeue").write_text("#!/bin/sh\nexit 1\n")
+    lock._cancel_orphans()
+    assert "cannot be looked for" in capsys.readouterr().err
