@@ -29,6 +29,8 @@ LARGEST_CONTRACTION = 0.65
 NOISE = 0.015  # of the largest pressure: two set pressures this close are one
 NICE = 0.01  # MPa: what a noisy set pressure is meant to be a multiple of
 SWEEP = 0.15  # of the range: values that spread so far are no setting
+RARE, WIDEST = 0.1, 5  # bins of a pressure that is held: share of the fullest, and how many
+HELD = 0.6  # share of a series in which the pressure is held
 SAME_LENGTH = 0.004  # two set contractions this close are one
 MOST_SET = 25  # settings of a map
 TURN = 0.05  # of the range of a curve: how far back a way goes that is another one
@@ -244,7 +246,17 @@ def _length_guess(low: float, high: float, factor: float, length: float) -> str:
 
 def _map(name: str, points: Array, said: list[str], table: Table, lines: list[int]) -> Bench:
     """The map of some points, in the order in which they were measured."""
-    settings = _settings(points[:, 0], NOISE * np.ptp([0, points[:, 0].max()]))
+    close = NOISE * np.ptp([0, points[:, 0].max()])
+    settings = _settings(points[:, 0], close)
+    few = [members for members in settings or () if len(members) < FEW]
+    if len(points) > SERIES and (settings is None or len(few) > len(settings) / 2):
+        plateaus = _plateaus(points[:, 0], close)
+        if plateaus is not None:
+            held_rows = np.unique(np.concatenate(plateaus))
+            between = len(points) - len(held_rows)
+            said.append(f"{between} points between set pressures, not used")
+            points = points[held_rows]
+            settings = [np.searchsorted(held_rows, members) for members in plateaus]
     curves: list[Array] = []
     loops: dict[float, float] = {}
     if settings is not None:
@@ -279,6 +291,20 @@ def _settings(values: Array, close: float) -> list[NDArray[np.intp]] | None:
     if spread > max(SWEEP * float(np.ptp(values)), 4 * close) and spread > 2 * close:
         return None
     if len(groups) > MOST_SET and len(groups) > len(values) / 3:
+        return None
+    return groups
+
+
+def _plateaus(values: Array, close: float) -> list[NDArray[np.intp]] | None:
+    """Rows of a time series by the value that was held; those on the way between are of none."""
+    bins = np.floor((values - values.min()) / close).astype(int)
+    count = np.bincount(bins)
+    full = np.append(count >= max(FEW, RARE * count.max()), False)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], full]).astype(int))).reshape(-1, 2)
+    # beside the full bins is the rest of the noise
+    groups = [np.flatnonzero((bins >= low - 1) & (bins <= high)) for low, high in edges]
+    widest = max((high - low for low, high in edges), default=0)
+    if widest > WIDEST or sum(map(len, groups)) < HELD * len(values):
         return None
     return groups
 

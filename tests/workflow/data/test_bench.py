@@ -296,6 +296,27 @@ def test_a_time_series_of_a_loop(tmp_path):
     assert found.loops[0.3] == pytest.approx(30, abs=8)
 
 
+def test_a_time_series_of_several_pressures(tmp_path):
+    """Length up and down at each pressure, and ramps of the pressure between."""
+    rng = np.random.default_rng(5)
+    rows, last = [], 0.0
+    for p in (1.0, 2.0, 4.0):
+        rows += [(q, 0.0, 300 * q) for q in np.linspace(last, p, 15)]
+        e = 0.08 * (1 - np.cos(np.linspace(0, 2 * np.pi, 300)))
+        rows += [(p, x, 300 * p * (1 - 5 * x)) for x in e]
+        last = p
+    text = "t [s]\tp [bar]\tstroke [mm]\tF [N]\n"
+    for k, (p, e, f) in enumerate(rows):
+        noise = rng.standard_normal(3)
+        text += f"{k / 10}\t{p + 0.01 * noise[0]:.4f}\t{200 * e + 0.02 * noise[1]:.3f}\t"
+        text += f"{f + noise[2]:.2f}\n"
+    found = read(tmp_path, text)
+    np.testing.assert_allclose(found.pressures, [0.1, 0.2, 0.4])
+    assert 900 <= len(found.measured) < 930
+    np.testing.assert_allclose(found.force([0.05, 0.1], 0.2), [450, 300], atol=5)
+    assert any("between set pressures, not used" in line for line in found.said)
+
+
 def test_sweeps_of_the_pressure_at_set_lengths(tmp_path):
     points = [
         (p + e / 20, e, 2000 * (p + e / 20) * (1 - 4 * e))
