@@ -13,7 +13,20 @@ from solver.sources import of_solve, sources
 TRACER = """\
 import json, pathlib, sys
 root, opened = pathlib.Path(sys.argv[1]), set()
-sys.addaudithook(lambda event, given: opened.add(str(given[0])) if event == "open" else None)
+
+
+def hook(event, given):
+    # what is read to find out whether something has changed makes no result
+    frame = sys._getframe(1) if event == "open" else None
+    asked = False
+    while frame and not asked:
+        asked = frame.f_code.co_filename.endswith("solver/sources.py")
+        frame = frame.f_back
+    if event == "open" and not asked:
+        opened.add(str(given[0]))
+
+
+sys.addaudithook(hook)
 from workflow.__main__ import main
 status = main(sys.argv[2:])
 files = opened | {m.__file__ for m in list(sys.modules.values()) if getattr(m, "__file__", None)}
