@@ -253,7 +253,11 @@ def _unit_among(tokens: list[str]) -> tuple[str, list[str]]:
             part = "/".join(tokens[max(last - count, 0) : last])
             at_end = last == len(tokens) > 1
             known = unit_of(part) and (len(part) > 1 or at_end or part in "N%")
-            if known and last - count >= (len(tokens) > 1) and part != "in" * (last < len(tokens)):
+            if (
+                known
+                and (last - count >= (len(tokens) > 1) or part == "%")
+                and part != "in" * (last < len(tokens))
+            ):
                 return part, tokens[: last - count] + tokens[last:]
     return "", tokens
 

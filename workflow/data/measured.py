@@ -31,6 +31,7 @@ NUMBER = re.compile(
     rf"(?P<sign>[+\-\u2212]?)(?P<digits>(?:{GROUPS}|\d[\d.,]*|[.,]\d+)(?:[.,]\d+)*)"
     r"(?P<power>[eE][+\-]?\d+)?\s*(?P<unit>[^\d\s.,;+\-][^\s;]{0,9})?"
 )
+SIGNS = {",": "comma", ".": "point"}  # before decimals
 FEWEST = 2  # numbers of a row of data
 SHOWN_LINES = 5
 
@@ -92,7 +93,7 @@ class Table:
             if value is None:
                 raise StudyError(
                     f"{self.path}:{line}: not all of it are numbers; {shown(cell)} stands under "
-                    f"{column.name}"
+                    f"{column.name}, and decimals follow a {SIGNS[self.decimal]}"
                 )
             values.append(value * self._factor(column, unit, cell, line, factor))
         return np.array(values)
@@ -166,7 +167,7 @@ def read(path: Path, words: tuple[Word, ...]) -> Table:
     decimal = _decimal(name, rows, numbers, separator)
     used = {column.place for column in columns.values()}
     unused = tuple(h for (place, _), h in zip(found, heads, strict=True) if place not in used and h)
-    how = f"{SEPARATORS[separator]}, decimal {'comma' if decimal == ',' else 'point'}, {how_named}"
+    how = f"{SEPARATORS[separator]}, decimal {SIGNS[decimal]}, {how_named}"
     if text_lines:
         how += f"; lines of words between the numbers: {_listed(text_lines)}"
     return Table(path, rows, numbers, decimal, columns, unused, how)
@@ -239,13 +240,21 @@ def _separator(lines: list[str]) -> str | None:
     return best
 
 
+def _grouped(by: str, decimal: str) -> str:
+    """Pattern of digits in groups of three."""
+    return rf"\d{{1,3}}({re.escape(by)}\d{{3}})+({re.escape(decimal)}\d*)?"
+
+
 def _number(cell: str, decimal: str) -> tuple[float | None, str]:
     """Value of a cell, and a unit that stands behind it."""
     found = NUMBER.fullmatch(cell)
     if found is None:
         return None, ""
     digits = re.sub(rf"[ '\u2019{SPACES}]", "", found["digits"])
-    digits = digits.replace("." if decimal == "," else ",", "").replace(decimal, ".")
+    other = "." if decimal == "," else ","
+    if other in digits and not re.fullmatch(_grouped(other, decimal), digits):
+        return None, ""  # of the other decimal sign
+    digits = digits.replace(other, "").replace(decimal, ".")
     sign = "-" if found["sign"] in ("-", "\u2212") else ""
     try:
         return float(sign + digits + (found["power"] or "")), found["unit"] or ""
@@ -260,6 +269,8 @@ def _decimal(name: str, rows: list[Cells], lines: list[int], separator: str) -> 
         for cell in cells:
             found = NUMBER.fullmatch(cell)
             digits = found["digits"] if found else ""
+            if re.fullmatch(r"\d{1,4}([.,])\d{1,2}\1\d{2,4}", digits):
+                continue  # a date
             if "," in digits and "." in digits:
                 return max(",.", key=digits.rindex)
             if "," in digits:
@@ -363,7 +374,7 @@ def _of_quantities(name: str, found: list[tuple[int, Header]]) -> dict[str, Colu
             raise StudyError(f"{name}: {count} columns are called {shown(text)}; leave one of them")
     columns: dict[str, Column] = {}
     for place, header in found:
-        if not header.quantity:
+        if not header.quantity or (header.unknown and header.quantity == "time"):
             continue
         if header.unknown:
             raise StudyError(

@@ -121,6 +121,10 @@ FILES = {  # name: text or bytes
         "pressure_MPa;extension_mm;force_N\n",
         lambda p, e, f: f"{p};{-LENGTH * e:g};{f}".replace("-", "\u2212"),
     ),
+    "a date, a temperature": written(
+        "Datum;T [\u00b0C];p [bar];% contraction;F [N]\n",
+        lambda p, e, f: "01.05.2024;21,5;" + comma(f"{10 * p:.1f};{100 * e:g};{f:g}"),
+    ),
     "scatter": written(
         "Pressure (bar),Contraction rate [%],Force_kN_mean,Force std (kN)\n",
         lambda p, e, f: f"{10 * p:g},{100 * e:g},{f / 1e3:g},0.01",
@@ -179,6 +183,10 @@ REFUSED = {  # text, what the line says
         "perhaps they are in kPa",
     ),
     "a header twice": ("force_N," + HEAD + "1,0.2,0,1\n", "2 columns are called 'force_N'"),
+    "two decimal signs": (
+        "p_bar;e_%;F_N\n2,0;0;620.5\n2,0;5;410.25\n",
+        ":2: not all of it are numbers; '620.5' stands under 'F_N', and decimals follow a comma",
+    ),
     "two forces": ("F [N],pressure_MPa,contraction,force_N\n1,0.2,0,1\n", "both 'F \\[N\\]' and"),
     "no header": ("0.2,0,620\n0.2,0.1,251\n", "no line above the numbers names the columns"),
     "unknown headers": ("a,b,c\n0.2,0,620\n0.2,0.1,251\n", "there are a, b, c"),
