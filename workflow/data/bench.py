@@ -16,9 +16,10 @@ from solver import net
 from workflow.data import headers, measured, reference
 from workflow.data.measured import Table
 from workflow.data.reference import CONTRACTIONS, ForceMap
-from workflow.study import checks, user_file
+from workflow.study import user_file
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError, choices, shown
+from workflow.study.limits import HIGHEST
 from workflow.study.schema import is_path
 from workflow.study.units import PRESSURE
 
@@ -159,7 +160,7 @@ def _check_pressure(table: Table, pressure: Array) -> None:
             if PRESSURE.low <= written * size <= PRESSURE.high and size != header.factor
         }
         guess = " or ".join(f"{unit}, that is {written * s:.4g} MPa" for unit, s in others.items())
-        if not guess and largest <= checks.HIGHEST:
+        if not guess and largest <= HIGHEST:
             return
         raise table.refuse(
             f"pressures up to {written:.6g} under {shown(header.text)} would be {largest:.4g} MPa; "
