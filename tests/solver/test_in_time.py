@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from geometry.muscle import Braid, Muscle
 from solver import balance, record
 from solver.case import Case
 from solver.history import History, Start, Valve, Wave, sampled, through
@@ -105,6 +106,40 @@ def test_both_limits(make_case, solve_case, nbr, rate, stiffer):
     path = LoadPath(kind="isobaric", held=0.3, stops=(0.2,))
     elastic = solve_case(make_case(model="cylinder", rubber=rubber, path=path)).states["force"][0]
     assert found == pytest.approx(elastic, rel=1e-6)
+
+
+def test_random_muscles_go_through_a_cycle(make_case, solve_case, thread):
+    """Twenty of them, of any path and start: all states, and energies that balance."""
+    chance = np.random.default_rng(4681796)
+    for number in range(20):
+        inner, wall = chance.uniform(8, 40), chance.uniform(0.05, 0.15)
+        depths = inner * (1 + 2 * wall * np.array([0.2, 0.5]))
+        braid = Braid.from_angle(
+            angle=chance.uniform(18, 30), threads=60, layer_diameters=tuple(depths)
+        )
+        muscle = Muscle(
+            inner_diameter=inner, wall_thickness=inner * wall, length=10 * inner, braid=braid
+        )
+        pressure = chance.uniform(0.15, 0.5)
+        kind, held, low, high = [
+            ("isobaric", pressure, 0.0, 0.15),
+            ("isometric", 0.05, pressure, 1.6 * pressure),
+            ("isotonic", 0.6 * pressure * inner**2, 0.1, 1.5 * pressure),
+        ][number % 3]
+        period = 10 ** chance.uniform(-2, 2)
+        times, stops = sampled(list(Wave)[number % 2], low, high, period, 1, 32)
+        start = list(Start)[chance.integers(2)]
+        history = History(times=times, period=period, start=start)
+        case = make_case(
+            model="cylinder",
+            muscle=muscle,
+            thread=replace(thread, stiffness=315 * (inner / 20) ** 2),
+            path=LoadPath(kind=kind, held=held, stops=stops, history=history),
+            memory=Memory.flat(chance.uniform(0.02, 0.15), 1e-3, 1e2),
+        )
+        solution = solve_case(case)
+        assert solution.status == "converged", (number, kind, solution.reason)
+        assert np.all(np.diff(solution.states["dissipated"]) >= 0)
 
 
 def history_of(*rows, steps, kind="isobaric", held=0.3, **more):
