@@ -88,7 +88,15 @@ def map_digest(wildcards):
 rule map_of:
     output:
         multiext(
-            f"{RESULTS}/maps/{{map}}", ".nc", ".csv", ".mat", ".json", ".png", ".svg", ".html"
+            f"{RESULTS}/maps/{{map}}",
+            ".nc",
+            ".csv",
+            ".mat",
+            ".fmu",
+            ".json",
+            ".png",
+            ".svg",
+            ".html",
         ),
     log:
         f"{RESULTS}/logs/maps/{{map}}.log",

@@ -1,7 +1,10 @@
 """Maps for controllers: cubics between states, their error, and what is written of them."""
 
+import ctypes
 import json
+import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -10,6 +13,7 @@ from scipy.io import loadmat
 
 from solver.load_path import LoadPath
 from workflow.__main__ import main
+from workflow.answers.maps import fmu
 from workflow.answers.maps.build import Builder
 from workflow.answers.maps.table import FORCE, VOLUME, Map
 from workflow.answers.quick import Quick
@@ -139,6 +143,52 @@ def test_the_program_writes_it_and_solves_nothing_again(built, folder, monkeypat
     main(["map", "quick", "--study", "study.yaml", "--folder", "maps"])
     changed = [n for n, b in first.items() if Path("maps", n).read_bytes() != b]
     assert changed == []
+
+
+def test_the_fmu_gives_what_the_map_does(exact, tmp_path):
+    """Its library is called as a simulator does; muscle of 300 mm, everything in SI units."""
+    exact.valid[3, 3] = False
+    assert fmu.write(exact, tmp_path / "m.fmu"), "no C compiler"
+    with zipfile.ZipFile(tmp_path / "m.fmu") as archive:
+        archive.extractall(tmp_path)
+    described = ElementTree.parse(tmp_path / "modelDescription.xml").getroot()
+    numbers = {
+        v.get("name"): int(v.get("valueReference")) for v in described.iter("ScalarVariable")
+    }
+    (library,) = (tmp_path / "binaries").rglob("muscle.*")
+    call = ctypes.CDLL(str(library))
+    call.fmi2Instantiate.restype = call.fmi2GetVersion.restype = ctypes.c_void_p
+    assert ctypes.string_at(call.fmi2GetVersion()) == b"2.0"
+
+    def instance(guid):
+        return call.fmi2Instantiate(b"m", 1, guid, b"", None, 0, 0)
+
+    assert not instance(b"another")
+    made = ctypes.c_void_p(instance(described.get("guid").encode()))
+    real = ctypes.c_double
+
+    def outputs(p, length):
+        at = (ctypes.c_uint * 2)(numbers["p"], numbers["l"])
+        assert call.fmi2SetReal(made, at, ctypes.c_size_t(2), (real * 2)(p, length)) == 0
+        assert call.fmi2DoStep(made, real(0), real(0.1), 1) == 0
+        names = ("F", "V", "dF_dl", "dF_dp", "valid")
+        at, found = (ctypes.c_uint * 5)(*[numbers[n] for n in names]), (real * 5)()
+        assert call.fmi2GetReal(made, at, ctypes.c_size_t(5), found) == 0
+        return dict(zip(names, found, strict=True))
+
+    rng = np.random.default_rng(3)
+    for p, e in zip(rng.uniform(0, 0.4, 50), rng.uniform(-0.1, 0.3, 50), strict=True):
+        found = outputs(p * 1e6, 0.3 * (1 - e))
+        assert found["F"] == pytest.approx(float(exact(FORCE, p, e)), abs=1e-9)
+        assert found["V"] == pytest.approx(float(exact(VOLUME, p, e)) * 1e-9, abs=1e-18)
+        by_e, by_p = (float(exact(FORCE, p, e, by=k)) for k in ("contraction", "pressure"))
+        assert found["dF_dl"] == pytest.approx(-by_e / 0.3, abs=1e-8)
+        assert found["dF_dp"] == pytest.approx(by_p * 1e-6, abs=1e-14)
+        assert found["valid"] == 1
+    assert outputs(0.45e6, 0.3 * 0.8)["valid"] == 0  # beside a state that was not found
+    assert outputs(0.6e6, 0.3)["valid"] == 0
+    assert outputs(0.6e6, 0.3)["F"] == pytest.approx(outputs(0.5e6, 0.3)["F"])
+    call.fmi2FreeInstance(made)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from geometry.files import atomic_write
+from workflow.answers.maps import fmu
 from workflow.answers.maps.build import NEAR, Checked
 from workflow.answers.maps.table import FORCE, UNITS, Map
 from workflow.figures import style
@@ -18,7 +19,7 @@ LINES = 8  # pressures that are drawn at most
 
 
 def write(found: Checked, output: Path) -> None:
-    """Write ``output`` with the endings .nc, .mat, .csv, .json, .png and .svg."""
+    """Write ``output`` with the endings .nc, .mat, .csv, .fmu, .json, .png and .svg."""
     made = found.map
     data = made.dataset()
     data.attrs |= errors(found)
@@ -30,6 +31,7 @@ def write(found: Checked, output: Path) -> None:
         _write_mat(made, beside)
     with atomic_write(output.with_suffix(".json")) as beside:
         beside.write_text(json.dumps(as_dict(found), indent=1) + "\n")
+    fmu.write(made, output.with_suffix(".fmu"))
     figure = draw(found)
     for suffix in (".svg", ".png"):
         style.save(figure, output.with_suffix(suffix))
