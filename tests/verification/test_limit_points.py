@@ -16,7 +16,7 @@ from geometry.muscle import Braid, Muscle
 from solver.effects import Effects
 from solver.load_path import Control, LoadPath, Waypoint
 from solver.material import Thread
-from solver.models.cylinder.curve import _scale, _walk
+from solver.models.cylinder import curve
 from solver.models.cylinder.mechanics import Cylinder
 from solver.numerics import Numerics
 from solver.rubber.mooney_rivlin.law import MooneyRivlin
@@ -190,8 +190,8 @@ def test_a_fold_is_passed_under_volume_control_by_the_cylinder(balloon):
     kinds, at, found = (Control.CONTRACTION, Control.VOLUME), tube.start, []
     for radius in RADII_PASSED:
         volume = math.pi * radius**2 * tube.case.muscle.length
-        goal = np.array([0.0, volume / _scale(tube, Control.VOLUME)])
-        at, reached = _walk(tube, kinds, goal, at)
+        goal = np.array([0.0, volume / curve.scale(tube, Control.VOLUME)])
+        at, reached = curve.walk(tube, kinds, goal, at)
         assert reached
         found.append(tube.state(at).pressure)
     check_passed(found)
