@@ -125,7 +125,7 @@ def numbers(muscle: Muscle) -> list[tuple[str, str]]:
         return [*rows, ("threads", "none")]
     if isinstance(braid, LayeredBraid):
         rows += [
-            (f"{kind} {threads} threads", f"{diameter:.4g} mm, {math.degrees(angle):.3g}°")
+            (f"{kind}, {threads} each", f"{diameter:.4g} mm, {math.degrees(angle):.3g}°")
             for kind, threads, diameter, angle in zip(
                 braid.kinds, braid.threads, braid.layer_diameters, braid.layer_angles, strict=True
             )
