@@ -29,7 +29,8 @@ def hook(event, given):
 sys.addaudithook(hook)
 from workflow.__main__ import main
 status = main(sys.argv[2:])
-files = opened | {m.__file__ for m in list(sys.modules.values()) if getattr(m, "__file__", None)}
+data = {name for name in opened if not name.endswith(".py")}  # Python is read for its digest too
+files = data | {m.__file__ for m in list(sys.modules.values()) if getattr(m, "__file__", None)}
 inside = {p.resolve() for p in map(pathlib.Path, files) if p.resolve().is_relative_to(root)}
 print(json.dumps([status, sorted(str(p.relative_to(root)) for p in inside)]))
 """
