@@ -8,7 +8,7 @@ errors that are kept apart, all as shares of the curve's largest force:
 - deviation from each reference map, which no mesh and no model removes.
 
 Every curve of the scenes is solved on a mesh twice as fine too: its own discretisation error; that
-of the solid also from the planner's coarser mesh.
+of the solid also from the planner's coarser and finer meshes.
 Where the solution is smooth (a bare tube whose ends slide) the order is that of theory; the ends
 of the muscle spoil it. Elements are quadratic only. Costs are measured by benchmark.py beside
 this.
@@ -161,7 +161,8 @@ def _scenes(study: Study) -> Iterator[AnalysisCase]:
         own = getattr(case.numerics, part)
         yield from _pair(planned.label, case, own)
         if own == SectionMesh():
-            yield from _pair(f"{planned.label}, coarser", case, MESHES["coarser"][part])
+            for name in ("coarser", "finer"):
+                yield from _pair(f"{planned.label}, {name}", case, MESHES[name][part])
 
 
 def _with_mesh(numerics: Numerics, part: str, mesh: MeridianMesh | SectionMesh) -> Numerics:
