@@ -51,9 +51,7 @@ def design_digest(wildcards):
 
 rule design_of:
     output:
-        multiext(
-            f"{RESULTS}/design/{{design}}", ".yaml", ".json", ".csv", ".png", ".svg", ".html"
-        ),
+        multiext(f"{RESULTS}/design/{{design}}", ".yaml", ".json", ".csv", ".png", ".svg", ".html"),
     log:
         f"{RESULTS}/logs/design/{{design}}.log",
     params:
