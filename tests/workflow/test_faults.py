@@ -193,7 +193,7 @@ def test_damage_is_noticed_and_made_good_by_the_next_run(project, copy, number):
 def test_a_flipped_bit_anywhere_is_found_by_the_check(project, copy):
     results = copy.folder / "results"
     assert copy.run("check", program=("workflow",))[0] == 0
-    kinds = ("cases/*", "figures/*", "meshes/*", "tables/*", "dataset.nc", "states.parquet")
+    kinds = ("cases/*", "figures/*", "meshes/*", "tables/*", "*.nc", "*.parquet", "*.html")
     chosen = [path for kind in kinds for path in results.glob(kind)]
     for path in chosen:
         flip(path)

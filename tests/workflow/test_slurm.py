@@ -10,7 +10,7 @@ import time
 import pytest
 import yaml
 
-from geometry.files import HOST, atomic_write
+from geometry.files import HOST
 from workflow.run import lock
 
 from .project import ROOT
@@ -103,10 +103,15 @@ def test_what_another_machine_writes_is_let_alone(tmp_path):
 
 def test_what_is_being_written_here_is_let_alone(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with atomic_write(tmp_path / "a.h5") as beside:
+    with subprocess.Popen(["sleep", "60"], cwd=tmp_path) as writer:
+        beside = tmp_path / f".{HOST}.{writer.pid}.a.h5"
         beside.touch()
         lock.tidy(tmp_path)
-        assert beside.exists()
+        there = beside.exists()
+        writer.kill()
+    assert there
+    lock.tidy(tmp_path)
+    assert not beside.exists()
 
 
 SQUEUE = """\

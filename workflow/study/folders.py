@@ -5,6 +5,7 @@ results/                                      all else of the default study
 results/studies/<name>/                       all else of another one
 """
 
+import re
 from pathlib import Path
 
 from geometry.files import RESULTS
@@ -23,7 +24,8 @@ def of_study(file: Path | str) -> Path:
     path = Path(file)
     if path.resolve() == DEFAULT.resolve():
         return RESULTS
-    return RESULTS / "studies" / (path.resolve().parent.name if path.stem in SAME else path.stem)
+    name = path.resolve().parent.name if path.stem in SAME else path.stem
+    return RESULTS / "studies" / re.sub(r"[^\w.-]", "_", name)  # no pattern of Snakemake, no blank
 
 
 def check_owner(file: Path | str) -> None:

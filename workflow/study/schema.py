@@ -157,7 +157,7 @@ def _maps(value: object) -> tuple[str, ...]:
 
 def is_path(name: object) -> bool:
     """Whether what names forces is the path of a file, and no map of this project."""
-    return isinstance(name, str) and bool(PurePath(name).suffix or len(PurePath(name).parts) > 1)
+    return isinstance(name, str) and bool(PurePath(name).suffix or len(PurePath(name).parts) != 1)
 
 
 def _each_once(value: object) -> list[str]:

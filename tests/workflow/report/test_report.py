@@ -61,7 +61,7 @@ def test_the_report_opens_without_errors(report):
 @pytest.mark.parametrize("name", ["fig04", "fig08"])
 def test_a_page_shows_its_whole_figure(report, name):
     """At the width of a phone the figure is as wide as the page, and nothing of it is cut off."""
-    page = report.parent / "report" / f"{name}.html"
+    page = report.parent / "studies/smoke/report" / f"{name}.html"
     probe = page.with_name("probe.html")
     measure = (
         "<script>addEventListener('load', () => {const i = document.images[0],"
