@@ -2,8 +2,6 @@
 #
 #   in   the records of the study; what its muscles are built into; the reference maps
 #   out  results/sheets/<scene>.html, .png, .svg, .csv and .json
-from solver.case import digest
-from workflow.study.schema import SHEET
 
 
 wildcard_constraints:
@@ -12,17 +10,12 @@ wildcard_constraints:
     scene="|".join(map(re.escape, PLAN.study.scenes)) or "none",
 
 
-def sheets():
-    """Pages of all scenes that ask for sheets."""
-    asking = [name for name, asked in PLAN.study.scenes.items() if SHEET in asked.quantities]
-    return [f"{RESULTS}/sheets/{scene}.html" for scene in asking]
-
-
 rule sheet:
     input:
         solved("study"),
     output:
-        multiext(f"{RESULTS}/sheets/{{scene}}", ".html", ".png", ".svg", ".csv", ".json"),
+        multiext(f"{RESULTS}/sheets/{{scene}}", ".png", ".svg", ".csv", ".json"),
+        html=f"{RESULTS}/sheets/{{scene}}.html",
     log:
         f"{RESULTS}/logs/sheets/{{scene}}.log",
     params:
@@ -33,7 +26,7 @@ rule sheet:
         "Writing the sheets of {wildcards.scene}"
     shell:
         "python -m workflow sheets --study {params.study:q} --scene {wildcards.scene:q}"
-        " --output {output[0]:q} > {log:q} 2>&1"
+        " --output {output.html:q} > {log:q} 2>&1"
 
 
 # Requirements of the study file -> the muscle that meets them, or what stands in the way.
@@ -42,13 +35,6 @@ rule sheet:
 #   out  results/design/<design>.yaml     an entry to paste; .json, .csv, .png, .svg, .html
 #
 # What is solved on the way is kept in results/cases: a design that was broken off goes on.
-def design_digest(wildcards):
-    asked = PLAN.study.design[wildcards.design]
-    bases = sorted({asked.base, *(asked.free.muscle or ())})
-    made_of = [(name, PLAN.study.muscles[name]) for name in bases]
-    return digest(repr((asked, made_of, sorted(PLAN.study.rubbers.items()))))
-
-
 rule design_of:
     output:
         multiext(f"{RESULTS}/design/{{design}}", ".yaml", ".json", ".csv", ".png", ".svg", ".html"),
@@ -58,7 +44,7 @@ rule design_of:
         study=lambda _: STUDY,  # as it is, braces and all
         asked=design_digest,
         code=lambda _: code("workflow.programs.design"),
-        folder=f"{RESULTS}/design",
+        folder=lambda wildcards, output: str(Path(output[0]).parent),
     message:
         "Designing {wildcards.design}"
     shell:
@@ -77,12 +63,6 @@ rule design:
 #
 #   in   what the study file says of it; solver/ and workflow/answers/maps/
 #   out  results/maps/<map>.nc    and .csv, .mat, .json (its error), .png, .svg, .html
-def map_digest(wildcards):
-    asked = PLAN.study.maps[wildcards.map]
-    made_of = PLAN.study.muscles[asked.muscle], PLAN.study.variants[asked.variant]
-    return digest(repr((asked, made_of)))
-
-
 rule map_of:
     output:
         multiext(
@@ -102,7 +82,7 @@ rule map_of:
         study=lambda _: STUDY,  # as it is, braces and all
         asked=map_digest,
         code=lambda _: code("workflow.programs.map"),
-        folder=f"{RESULTS}/maps",
+        folder=lambda wildcards, output: str(Path(output[0]).parent),
     message:
         "Making the map {wildcards.map}"
     shell:

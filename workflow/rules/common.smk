@@ -17,6 +17,7 @@ sys.path.insert(0, CHECKOUT)
 
 from geometry.files import seal_of
 from solver import sources
+from solver.case import digest
 from workflow.analyses import analysis
 from workflow.analyses.registry import ANALYSES
 from workflow.data import bench, paraview
@@ -25,6 +26,7 @@ from workflow.plan.plan import read
 from workflow.run import batches
 from workflow.study import folders
 from workflow.study.errors import StudyError
+from workflow.study.schema import SHEET
 from workflow.study.study import given_settings
 
 # Programs are those of this checkout, from whatever folder they are run (and whatever that folder
@@ -91,3 +93,58 @@ def deviations():
     isobaric = {p.muscle for s in PLAN.scenes.values() for p in s if p.group == "isobaric"}
     measured = any(PLAN.study.muscles[muscle].reference for muscle in isobaric)
     return [f"{RESULTS}/tables/deviation.csv"] if measured else []
+
+
+def program_option(asked):
+    """Which cases, as the program is told."""
+    kind, _, name = asked.partition("-")
+    return {"study": [], "scene": ["--scene", name], "analysis": ["--name", name]}[kind]
+
+
+class Batch:
+    """The cases that a job will solve, in messages: ``{BATCH:study 0}``."""
+
+    def __format__(self, text):
+        asked, _, batch = text.rpartition(" ")
+        cases = batches.of_batch(cases_asked(asked), int(batch), BATCHES)
+        return batches.described(cases)
+
+
+BATCH = Batch()
+
+
+class Figures:
+    """Those that will be drawn, in a message."""
+
+    def __format__(self, _):
+        found = [scene for scene in DRAWN if will_be_drawn(scene)]
+        return ", ".join(found) or "nothing: all figures are there"
+
+
+def will_be_drawn(scene):
+    cases = PLAN.cases_of(scene)
+    return update.why_drawn(PLAN, scene, RESULTS) or batches.to_solve(cases)
+
+
+FIGURES = Figures()
+
+
+def sheets():
+    """Pages of all scenes that ask for sheets."""
+    asking = [name for name, asked in PLAN.study.scenes.items() if SHEET in asked.quantities]
+    return [f"{RESULTS}/sheets/{scene}.html" for scene in asking]
+
+
+def design_digest(wildcards):
+    """Digest of what a design takes from the study."""
+    asked = PLAN.study.design[wildcards.design]
+    bases = sorted({asked.base, *(asked.free.muscle or ())})
+    made_of = [(name, PLAN.study.muscles[name]) for name in bases]
+    return digest(repr((asked, made_of, sorted(PLAN.study.rubbers.items()))))
+
+
+def map_digest(wildcards):
+    """Digest of what a map takes from the study."""
+    asked = PLAN.study.maps[wildcards.map]
+    made_of = PLAN.study.muscles[asked.muscle], PLAN.study.variants[asked.variant]
+    return digest(repr((asked, made_of)))

@@ -41,19 +41,3 @@ rule figure:
         "Drawing {wildcards.figure}"
     shell:
         "python -m workflow draw --study {params.study:q} --scene {wildcards.figure:q} 2> {log:q}"
-
-
-class Figures:
-    """Those that will be drawn, in a message."""
-
-    def __format__(self, _):
-        found = [scene for scene in DRAWN if will_be_drawn(scene)]
-        return ", ".join(found) or "nothing: all figures are there"
-
-
-def will_be_drawn(scene):
-    cases = PLAN.cases_of(scene)
-    return update.why_drawn(PLAN, scene, RESULTS) or batches.to_solve(cases)
-
-
-FIGURES = Figures()

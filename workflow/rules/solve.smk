@@ -40,21 +40,3 @@ rule solve:
         " --batch {wildcards.batch} --batches {params.batches} --cores {threads}"
         " --wall-time {resources.wall_time} --memory {resources.memory}"
         " --log {log:q} --stamp {output:q}"
-
-
-def program_option(asked):
-    """Which cases, as the program is told."""
-    kind, _, name = asked.partition("-")
-    return {"study": [], "scene": ["--scene", name], "analysis": ["--name", name]}[kind]
-
-
-class Batch:
-    """The cases that a job will solve, in messages: ``{BATCH:study 0}``."""
-
-    def __format__(self, text):
-        asked, _, batch = text.rpartition(" ")
-        cases = batches.of_batch(cases_asked(asked), int(batch), BATCHES)
-        return batches.described(cases)
-
-
-BATCH = Batch()
