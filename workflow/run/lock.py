@@ -90,9 +90,7 @@ def _cancel_orphans() -> None:
         return
     asked = ["squeue", "--me", "--noheader", "--format=%i|%j|%Z"]
     try:
-        said = subprocess.run(asked, capture_output=True, text=True, timeout=ANSWER)
-        if said.returncode:
-            return  # the programs are here, and no cluster answers them
+        said = subprocess.run(asked, capture_output=True, text=True, timeout=ANSWER, check=True)
         jobs = [line.split("|", 2) for line in said.stdout.splitlines() if line.count("|") > 1]
         here = [job for job, name, folder in jobs if name.startswith(PREFIX) and _is_here(folder)]
         if here:
