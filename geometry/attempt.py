@@ -7,6 +7,7 @@ import signal
 import sys
 import traceback
 from collections.abc import Callable
+from pathlib import Path
 
 from geometry.refusal import Refusal
 
@@ -29,6 +30,8 @@ class Failed(Exception):
 
 def why_not(make: Callable[[], None], wall_time: float, memory: float) -> str:
     """Why ``make`` fails, by its own fault or at a limit [s, MB]; empty if it does not.
+
+    The limit of memory is of what it takes beside what this process has.
 
     What a signal from outside has ended is tried once more.
 
@@ -75,7 +78,10 @@ def _outcome(make: Callable[[], None], wall_time: float, memory: float) -> tuple
     try:
         import gmsh  # noqa: F401  before the limit: a library that is not there is no fault of ours
 
-        limit = int(memory * MIB)
+        limit = _size() + int(memory * MIB)
+        _, allowed = resource.getrlimit(resource.RLIMIT_AS)
+        if allowed != resource.RLIM_INFINITY:
+            limit = min(limit, allowed)
         resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
@@ -94,3 +100,13 @@ def _outcome(make: Callable[[], None], wall_time: float, memory: float) -> tuple
     except BaseException as error:
         return FAILED, type(error).__name__
     return MADE, ""
+
+
+def _size() -> int:
+    """Address space of this process [bytes].
+
+    It has all that the process it was forked from had, which may be more than the limit of a mesh:
+    a notebook, or a program that has imported much.
+    """
+    pages = Path("/proc/self/statm").read_text().split()[0]
+    return int(pages) * resource.getpagesize()

@@ -2,6 +2,7 @@
 
 import faulthandler
 import json
+import mmap
 import os
 import resource
 import signal
@@ -71,6 +72,12 @@ def test_what_comes_from_outside_is_none(kind):
     make, said = FOREIGN[kind]
     with pytest.raises(Failed, match=said):
         why_not(make, 60, 4000)
+
+
+def test_what_the_process_around_it_has_is_not_counted():
+    with mmap.mmap(-1, 2**32):
+        assert why_not(call(bytearray, 2**24), 60, 1000) == ""
+        assert "not within 1000 MB" in why_not(call(bytearray, 2**30), 60, 1000)
 
 
 def test_one_that_was_killed_is_tried_once_more(tmp_path):
