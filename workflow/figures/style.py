@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
-from matplotlib.ticker import MultipleLocator, PercentFormatter
+from matplotlib.ticker import MultipleLocator
 from matplotlib.transforms import ScaledTranslation
 
 from geometry.files import atomic_write
@@ -182,10 +182,17 @@ def panels(
 
 
 def percent(axis: Any, step: float | None = None) -> None:
-    """Shows fractions as percent on a matplotlib axis (``ax.xaxis`` or ``ax.yaxis``)."""
-    axis.set_major_formatter(PercentFormatter(1, decimals=0, symbol=""))
+    """Shows fractions as percent on a matplotlib axis (``ax.xaxis`` or ``ax.yaxis``).
+
+    With the digits that its ticks have: 2.5 is not 2.
+    """
+    axis.set_major_formatter(lambda value, _: _percent(value))
     if step:
         axis.set_major_locator(MultipleLocator(step))
+
+
+def _percent(value: float) -> str:
+    return f"{round(100 * value, 6) + 0.0:g}".replace("-", "\N{MINUS SIGN}")
 
 
 def labelled(axes: Any) -> list[Any]:

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 from workflow.__main__ import main
 from workflow.data import bench
@@ -45,6 +46,16 @@ def test_what_follows_stands_against_what_is_swept(scene):
     assert {"membrane", "solid", "festo_musclesim", "martens2017"} == set(table["source"])
     (ax,) = general.draw(general.table(scene("loads"))).axes
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("pressure [MPa]", "contraction [%]")
+
+
+@pytest.mark.parametrize("highest", [0.02, 0.1, 0.22, 0.25])
+def test_ticks_in_percent_say_where_they_are(highest):
+    ax = Figure().add_subplot()
+    ax.set_xlim(-0.01, highest)
+    style.percent(ax.xaxis)
+    said = ax.xaxis.get_major_formatter().format_ticks(ticks := ax.get_xticks())
+    found = [float(text.replace("\N{MINUS SIGN}", "-")) / 100 for text in said]
+    np.testing.assert_allclose(found, ticks, atol=1e-12)
 
 
 def test_drawn_numbers_are_those_of_the_states(scene):
