@@ -10,7 +10,7 @@ import pytest
 
 from solver.models import MODELS
 
-from .project import Project
+from .project import TRACE, Project
 
 DUMMY = '''\
 """A piston of the mean braid diameter: for tests."""
@@ -65,29 +65,17 @@ SCENE = """\
     contraction: [0, 0.05]
     models: [geometric, dummy]
 """
-TRACER = """\
-import json, pathlib, sys
-root, opened = pathlib.Path.cwd(), set()
-
-
-def hook(event, given):
-    # what is read to find out whether something has changed makes no result
-    frame = sys._getframe(1) if event == "open" else None
-    asked = False
-    while frame and not asked:
-        asked = frame.f_code.co_filename.endswith("solver/sources.py")
-        frame = frame.f_back
-    if event == "open" and not asked:
-        opened.add(str(given[0]))
-
-
-sys.addaudithook(hook)
+TRACER = (
+    TRACE
+    + """\
+root = pathlib.Path.cwd()
 from solver.__main__ import main
 status = main(sys.argv[1:])
 files = opened | {m.__file__ for m in list(sys.modules.values()) if getattr(m, "__file__", None)}
 inside = {p.resolve() for p in map(pathlib.Path, files) if p.resolve().is_relative_to(root)}
 print(json.dumps([status, sorted(str(p.relative_to(root)) for p in inside)]))
 """
+)
 TELL = """\
 import json
 from solver.models import MODELS

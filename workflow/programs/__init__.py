@@ -6,9 +6,11 @@ such a rule depends on (solver/sources.py).
 """
 
 import argparse
+from collections.abc import Collection
 from pathlib import Path
 
 from workflow.plan.plan import Plan, read
+from workflow.study.errors import StudyError, choices
 from workflow.study.folders import DEFAULT, check_owner, of_study
 
 
@@ -21,6 +23,29 @@ def results_of(given: argparse.Namespace) -> Path:
     """The folder of the results of the study file that was given."""
     check_owner(given.study)
     return of_study(given.study)
+
+
+def add_entries(parser: argparse.ArgumentParser, what: str, folder: str) -> None:
+    """Names of entries of a section of the study file, and where what is made of them goes."""
+    parser.add_argument("names", nargs="*", help=f"{what}s of the study file; by default all")
+    parser.add_argument("--folder", type=Path, help=f"by default {folder} in the study's results")
+    add_study(parser)
+
+
+def entries(given: argparse.Namespace, there: Collection[str], what: str) -> list[str]:
+    """The names of those that are meant.
+
+    Raises
+    ------
+    StudyError
+        If the study file has no such entry, or none at all.
+    """
+    for name in given.names:
+        if name not in there:
+            raise StudyError(f"{name}: no such {what}\n  allowed: {choices(name, there)}")
+    if not there:
+        raise StudyError(f"{given.study}: there is no {what} in it")
+    return given.names or list(there)
 
 
 def plan_of(given: argparse.Namespace) -> Plan:

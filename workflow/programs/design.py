@@ -5,19 +5,14 @@ design that was broken off goes on where it was. Without a name all designs are 
 """
 
 import argparse
-from pathlib import Path
 
-from workflow.programs import add_study
-from workflow.study import folders
-from workflow.study.errors import StudyError, choices
+from workflow.programs import add_entries, entries, results_of
 from workflow.study.study import load
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What it is told."""
-    parser.add_argument("names", nargs="*", help="designs of the study file; by default all")
-    parser.add_argument("--folder", type=Path, help="by default design in the study's results")
-    add_study(parser)
+    add_entries(parser, "design", "design")
 
 
 def run(given: argparse.Namespace) -> int:
@@ -26,16 +21,12 @@ def run(given: argparse.Namespace) -> int:
     from workflow.report import html_page
 
     study = load(given.study)
-    for name in given.names:
-        if name not in study.design:
-            raise StudyError(f"{name}: no such design\n  allowed: {choices(name, study.design)}")
-    if not study.design:
-        raise StudyError(f"{given.study}: there is no design in it")
-    for name in given.names or study.design:
+    names = entries(given, study.design, "design")
+    folder = given.folder or results_of(given) / "design"
+    for name in names:
         results = result.designed(study, name)
         for found in results:
             print("\n".join(result.report(found)))
-        folder = given.folder or folders.of_study(given.study) / "design"
         output = folder / f"{name}.yaml"
         result.write(study, name, results, output)
         html_page.write_beside(output, f"Design {name}", "design")

@@ -5,19 +5,14 @@ Without a name all maps of the study file are made.
 """
 
 import argparse
-from pathlib import Path
 
-from workflow.programs import add_study
-from workflow.study import folders
-from workflow.study.errors import StudyError, choices
+from workflow.programs import add_entries, entries, results_of
 from workflow.study.study import load
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What it is told."""
-    parser.add_argument("names", nargs="*", help="maps of the study file; by default all")
-    parser.add_argument("--folder", type=Path, help="by default maps in the study's results")
-    add_study(parser)
+    add_entries(parser, "map", "maps")
 
 
 def run(given: argparse.Namespace) -> int:
@@ -27,23 +22,13 @@ def run(given: argparse.Namespace) -> int:
     from workflow.report import html_page
 
     study = load(given.study)
-    for name in given.names:
-        if name not in study.maps:
-            raise StudyError(f"{name}: no such map\n  allowed: {choices(name, study.maps)}")
-    if not study.maps:
-        raise StudyError(f"{given.study}: there is no map in it")
-    for name in given.names or study.maps:
+    names = entries(given, study.maps, "map")
+    folder = given.folder or results_of(given) / "maps"
+    for name in names:
         found = Builder(study, name).built()
-        folder = given.folder or folders.of_study(given.study) / "maps"
         output = folder / f"{name}.nc"
         files.write(found, output)
-        html_page.write(
-            output.with_suffix(".html"),
-            f"Map {name}",
-            Path(html_page.__file__).with_name("map.rst"),
-            [output.with_suffix(".png")],
-            [],
-        )
+        html_page.write_beside(output, f"Map {name}", "map", rows=False)  # of thousands
         print(
             f"{name}: {found.map.pressure.size} pressures, {found.map.contraction.size} "
             f"contractions; force within {found.error:.2g} N, near the threshold "

@@ -62,11 +62,11 @@ def for_readers(name: str, rows: pd.DataFrame, page: str) -> pd.DataFrame | None
     return chosen
 
 
-def write_beside(output: Path, title: str, caption: str) -> None:
-    """A page of the picture and the table of the same name beside it."""
+def write_beside(output: Path, title: str, caption: str, *, rows: bool = True) -> None:
+    """A page of the picture and, with its ``rows``, the table of the same name beside it."""
     words = Path(__file__).with_name(f"{caption}.rst")
-    files = [output.with_suffix(".png")], [output.with_suffix(".csv")]
-    write(output.with_suffix(".html"), title, words, *files)
+    tables = [output.with_suffix(".csv")] if rows else []
+    write(output.with_suffix(".html"), title, words, [output.with_suffix(".png")], tables)
 
 
 def picture(path: Path) -> str:

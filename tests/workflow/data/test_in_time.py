@@ -11,23 +11,18 @@ from workflow.plan import explain
 from workflow.plan.plan import read
 from workflow.study.errors import StudyError
 
-STUDY = """\
-materials:
+from ..synthetic import MUSCLE
+
+MATERIALS = """\
   nbr:
     c10: 0.345083
     c01: 0.083805
     memory: {per_decade: 0.06, from: 1e-2, to: 10, reference_time: 60}
   listed: {c10: 0.345083, c01: 0.083805, memory: {shares: [0.2, 0.1], times: [10, 1]}}
-muscles:
-  one:
-    inner_diameter: 20
-    wall_thickness: 2
-    length: 300
-    layer_depths: [0.3, 0.9]
-    threads: 60
-    lead: 144
-    thread_stiffness: 315
-    material: nbr
+"""
+STUDY = (
+    MUSCLE.replace("  nbr: {c10: 0.345083, c01: 0.083805}\n", MATERIALS)
+    + """\
 scenes:
   loops:
     path: cycle
@@ -81,6 +76,7 @@ scenes:
     contraction: [0.05]
     models: [cylinder]
 """
+)
 
 
 def plan_of(tmp_path, old="", new=""):

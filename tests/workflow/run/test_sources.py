@@ -10,23 +10,12 @@ from solver import sources as module
 from solver.rubber import LAWS
 from solver.sources import of_solve, sources
 
-TRACER = """\
-import json, pathlib, sys
-root, opened = pathlib.Path(sys.argv[1]), set()
+from ..project import TRACE
 
-
-def hook(event, given):
-    # what is read to find out whether something has changed makes no result
-    frame = sys._getframe(1) if event == "open" else None
-    asked = False
-    while frame and not asked:
-        asked = frame.f_code.co_filename.endswith("solver/sources.py")
-        frame = frame.f_back
-    if event == "open" and not asked:
-        opened.add(str(given[0]))
-
-
-sys.addaudithook(hook)
+TRACER = (
+    TRACE
+    + """\
+root = pathlib.Path(sys.argv[1])
 from workflow.__main__ import main
 status = main(sys.argv[2:])
 data = {name for name in opened if not name.endswith(".py")}  # Python is read for its digest too
@@ -34,6 +23,7 @@ files = data | {m.__file__ for m in list(sys.modules.values()) if getattr(m, "__
 inside = {p.resolve() for p in map(pathlib.Path, files) if p.resolve().is_relative_to(root)}
 print(json.dumps([status, sorted(str(p.relative_to(root)) for p in inside)]))
 """
+)
 OURS = ("geometry/", "solver/", "workflow/", "config/reference/")
 DISPATCH = "workflow/__main__.py"  # finds a program by its name and does nothing else
 

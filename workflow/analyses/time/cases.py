@@ -35,16 +35,7 @@ def cases(study: Study) -> list[AnalysisCase]:
 
 
 def _case(study: Study, model: str, path: LoadPath, *, memory: bool = True, **more: object) -> Case:
-    made = study.muscles[MUSCLE]
-    return Case(
-        muscle=made.muscle,
-        rubber=made.rubber,
-        thread=made.thread,
-        path=path,
-        model=model,
-        memory=MEMORY if memory else None,
-        **more,  # type: ignore[arg-type]
-    )
+    return study.muscles[MUSCLE].case(path, model, memory=MEMORY if memory else None, **more)
 
 
 def cycle(kind: PathKind, held: float, end: float, period: float) -> LoadPath:

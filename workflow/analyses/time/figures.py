@@ -16,6 +16,7 @@ from workflow.figures import curves, style
 GAP = (0.66, 0.66)
 LINES = ("-", (0, (5, 2)), (0, (1, 1)))  # of rates, which lie on each other
 ELEMENTS = {"color": "0.45", "linestyle": (0, (4, 2)), "linewidth": 1.1}
+FAR = 20.0  # N: widths of the three elements beyond it are said, not drawn
 CONTRACTION, PRESSURE, FORCE = "contraction [1]", "pressure [MPa]", "force [N]"
 
 
@@ -41,7 +42,7 @@ def loops(table: pd.DataFrame, found: pd.DataFrame) -> Figure:
         along.plot(*widths(curve), label=label, **look)
         row = table[(table["set"] == "rate") & (table["label"] == label)]
         for value in row["three elements, width [N]"].dropna():
-            if value < 20:
+            if value < FAR:
                 along.plot([0, 0.2], [value] * 2, label="three elements", **ELEMENTS)
                 along.text(0.2, value, label, ha="right", va="bottom", fontsize=7, color="0.45")
     whole.set_title(f"third loop, {100 * RATES[1]:g} %/s, 0.3 MPa")
@@ -64,13 +65,12 @@ def loops(table: pd.DataFrame, found: pd.DataFrame) -> Figure:
     width.set_title(f"width at {100 * AT:g} %")
     style.legend(figure, style.labelled(axes[:, :2]), style.labelled(axes[:, 2:]))
     drawn = table[table["set"].isin(["rate", "pressure"])]
-    far = drawn["three elements, width [N]"] >= 20
+    far = drawn["three elements, width [N]"] >= FAR
     beyond = sorted(set(drawn.loc[far & (drawn["set"] == "rate"), "label"]))
+    cut = f"Three elements, fitted at {100 * RATES[1]:g} %/s, are beyond {FAR:g} N at "
     text = [
         undrawn.sentence(undrawn.without_value(drawn, "width", ["set", "label"])),
-        f"Three elements, fitted at {100 * RATES[1]:g} %/s, are beyond 20 N at {', '.join(beyond)}."
-        if beyond
-        else "",
+        f"{cut}{', '.join(beyond)}." if beyond else "",
         "Measured: twice 12.7 N (15.6 kPa) of a 10 mm muscle, whatever its pressure (Hunt 2017).",
     ]
     curves.note(figure, " ".join(filter(None, text)))
