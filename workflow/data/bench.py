@@ -20,7 +20,7 @@ from workflow.study import user_file
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError, choices, shown
 from workflow.study.limits import HIGHEST
-from workflow.study.schema import is_path
+from workflow.study.schema import FORCE_MAPS, is_path
 from workflow.study.units import PRESSURE
 
 FURTHEST = 0.2  # contraction, as in workflow/data/deviation.py
@@ -81,12 +81,12 @@ def read(name: str, length: float) -> ForceMap:
     StudyError
         If there is no such map or file, or something in it is missing, no number, or looks wrong.
     """
-    maps = reference.load()
-    if name in maps:
-        return maps[name]
+    if name in FORCE_MAPS:
+        return reference.load([name])[name]
     path = Path(name)
     if not is_path(name):
-        raise StudyError(f"{name}: no such reference map; {choices(name, maps)}, or a .csv file")
+        known = choices(name, FORCE_MAPS)
+        raise StudyError(f"{name}: no such reference map; {known}, or a .csv file")
     if not user_file.text_of(path, measured.LARGEST).strip():
         raise StudyError(f"{path}: there is no force in it")
     table = measured.read(path, headers.OF_MUSCLES)

@@ -11,7 +11,7 @@ outside its points a map is NaN.
 import csv
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -184,7 +184,13 @@ MAPS: dict[str, Callable[[], ForceMap]] = dict(
 
 def load(names: Iterable[str] = FORCE_MAPS) -> dict[str, ForceMap]:
     """Maps by name; all there are, if none is named."""
-    return {name: MAPS[name]() for name in names}
+    return {name: _read(name) for name in names}
+
+
+@cache
+def _read(name: str) -> ForceMap:
+    """A map, read once: many muscles may name it."""
+    return MAPS[name]()
 
 
 def relative_deviation(

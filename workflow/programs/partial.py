@@ -27,9 +27,10 @@ def run(given: argparse.Namespace) -> int:
     muscles, study = plan.study.muscles, given.study.name
     tree = dataset.build(curves, muscles, study=study, effects=True)
     dataset.write(tree, folder / "dataset.nc")
-    tidy.write(Table.of(curves, muscles), folder / "states.parquet")
+    table = Table.of(curves, muscles)
+    tidy.write(table, folder / "states.parquet")
     failures.write(plan, solutions, folder / failures.TABLE)
-    page.make(plan, f"{study}, unfinished", curves, Table.of(curves, muscles), folder)
+    page.make(plan, f"{study}, unfinished", curves, table, folder)
     print(f"{len(solutions) - missing} of {len(solutions)} cases are solved", flush=True)
     drawn, status = 0, 0
     for scene in update.scenes(plan):

@@ -127,6 +127,8 @@ def _walls(curves: Sequence[Curve], table: Table) -> list[dict[str, Any]]:
     """The deformed wall in every state that has fields of one section."""
     found = []
     for number, curve in enumerate(curves):
+        if not curve.solution.fields:
+            continue
         rows = table.states.index[table.states["curve"] == number]
         for row in rows:
             fields = curve.solution.fields.get(int(table.states.loc[row, "state"]))

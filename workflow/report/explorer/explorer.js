@@ -642,7 +642,8 @@ async function start() {
   }
   DATA = await unpacked($("content").textContent);
   const count = DATA.states.status.length;
-  $("summary").textContent = `${DATA.muscles.length} muscles, ${DATA.curves.length} curves, ${count} states.`
+  const counted = (number, name) => `${number} ${name}${number === 1 ? "" : "s"}`;
+  $("summary").textContent = `${counted(DATA.muscles.length, "muscle")}, ${counted(DATA.curves.length, "curve")}, ${counted(count, "state")}.`
     + (DATA.leftOut.length ? ` With so many states the solver's own numbers (${DATA.leftOut.join(", ")}) stand in the dataset only.` : "");
   if (!DATA.curves.length) { $("warning").textContent = "Nothing has been computed yet."; return; }
   choice = fromAddress();
