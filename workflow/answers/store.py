@@ -16,8 +16,7 @@ from solver.solve import solve
 from workflow.data import records
 from workflow.study.contents import Study
 from workflow.study.errors import StudyError
-
-LOGS = Path("results/logs/cases")
+from workflow.study.folders import LOGS
 
 
 class Store:

@@ -10,9 +10,10 @@ from solver.record import Solution
 from solver.status import CaseStatus, StateStatus
 from workflow.data.strain import judged
 from workflow.plan.plan import Place, Plan
+from workflow.study import folders
 from workflow.study.errors import StudyError
 
-FOLDER = Path("results/cases")
+FOLDER = folders.CASES
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from geometry.files import atomic_write
 from solver.record import Solution
 from solver.status import CaseStatus, StateStatus
 from workflow.plan.plan import Plan
+from workflow.study.folders import LOGS
 
 TABLE = Path("tables", "failures.csv")  # in the folder of a study
 COLUMNS = ("case", "label", "status", "states_missing", "reason", "scenes", "log", "analyses")
@@ -98,7 +99,7 @@ def _row(key: str, label: str, solution: Solution, strain: str = "") -> Row:
         "states_missing": str(sum(status in bad for status in solution.state_status)),
         "reason": " ".join([*solution.reason.split(), *strain.split()]),
         "scenes": "",
-        "log": f"results/logs/cases/{key}.log",
+        "log": f"{LOGS}/{key}.log",
         "analyses": "",
     }
 

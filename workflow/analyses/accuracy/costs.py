@@ -7,16 +7,17 @@ ran. All seconds are CPU seconds: they depend least on what else the machine doe
 
 import json
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from geometry.files import RESULTS
 from workflow.analyses.accuracy.errors import exponent
+from workflow.study import folders
 
-BENCHMARK = Path("results/cost.csv")
-SINGLE = Path("results/cost")
+BENCHMARK = RESULTS / "cost.csv"
+SINGLE = folders.COST
 PARTS = {  # column: what it is, in the order in which it is spent
     "mesh [s]": "mesh",
     "python [s]": "Python",

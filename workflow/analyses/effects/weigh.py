@@ -14,8 +14,9 @@ from workflow.analyses.analysis import Solved
 from workflow.analyses.effects.table import table
 from workflow.data import records
 from workflow.plan.effect_costs import FILE, MeasuredEffect
+from workflow.study import folders
 
-COSTS = Path("results/cost")
+COSTS = folders.COST
 
 
 def measure(study: str, costs: Path = COSTS, file: Path = FILE) -> None:
