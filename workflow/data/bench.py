@@ -134,7 +134,14 @@ def _points(table: Table, length: float) -> tuple[Array, list[int], list[str]]:
     return points, [int(n) for n in lines[used]], said
 
 
-PLACES = ("contraction", "stroke", "length", "strain", "extension")  # the first that there is
+PLACES = (
+    "contraction",
+    "stroke",
+    "length",
+    "strain",
+    "extension",
+    "stretch",
+)  # first that is there
 
 
 def _missing(table: Table, quantity: str, more: str = "") -> str:
@@ -220,6 +227,13 @@ def _contraction(
                 f"{length:g} mm long; perhaps {guess}"
             )
         return np.round(1 - values / length, 12)
+    if place == "stretch":
+        if not SHORTEST <= low <= high <= LONGEST:
+            raise table.refuse(
+                f"lengths of {low:.4g} to {high:.4g} of that at rest under {name} are not of a "
+                "muscle; perhaps contractions, then call them so"
+            )
+        return np.round(1 - values, 12)
     if place in ("strain", "extension"):
         strain = values if place == "strain" else values / length
         inside = strain[used.astype(bool)]

@@ -62,7 +62,13 @@ FILLERS = SET | {
     *("test", "data", "channel", "ch", "y", "x", "z", "cell", "transducer", "working", "operating"),
 }
 REST = {"initial", "rest", "original", "unloaded", "nominal", "start", "free"}  # of a length
-SELDOM = {"strain", "suspect", "test", "extension"}  # what a unit by itself does not mean
+SELDOM = {
+    "strain",
+    "stretch",
+    "suspect",
+    "test",
+    "extension",
+}  # what a unit by itself does not mean
 SCATTER = {  # of a quantity, not itself
     *(
         "std",
@@ -129,6 +135,11 @@ OF_MUSCLES = (
         ("strain", "dehnung", "elongation", "extension", "stretching"),
         (),
         {RATIO: "strain", LENGTH: "extension"},
+    ),
+    Word(
+        ("stretch", "streckung", "relativelength", "lengthratio"),
+        ("ll0", "ll", "lambda", "lam"),
+        {RATIO: "stretch"},
     ),
     Word(("suspect",), (), {RATIO: "suspect"}),
     Word(("time", "zeit", "timestamp", "temps", "tiempo", "elapsed"), ("t",), {TIME: "time"}),

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from workflow.data import headers
+from workflow.data import headers, wide
 from workflow.data.headers import Header, Word
 from workflow.study import user_file
 from workflow.study.errors import StudyError, printable, shown
@@ -145,21 +145,24 @@ def read(path: Path, words: tuple[Word, ...]) -> Table:
     if separator is None:
         raise StudyError(f"{name}: there is no force in it: no line has two numbers")
     split = [(n, _cells(line, separator)) for n, line in plain]
+    lines_of_file = split
+    if words is headers.OF_MUSCLES:
+        split = wide.lengthened(name, split, words, _is_number)
     first = next(k for k, (_, cells) in enumerate(split) if _share(cells) == 1 or _is_data(cells))
     comments = [(n, _uncommented(line)) for n, line in written if _is_comment(line)]
     above = [(n, cells) for n, cells in split[:first]]
     found, how_named = _columns(name, above, comments, separator, words, split[first])
     rows, numbers, text_lines = [], [], []
-    wide = max(place for place, _ in found) + 1
+    width = max(place for place, _ in found) + 1
     heads = [header.text.strip() for _, header in found]
     for n, cells in split[first:]:
         if not any(_is_number(cell) for cell in cells):
             text_lines.append(n)  # a header again, or words between the rows
             continue
-        if len(cells) > wide:
+        if len(cells) > width:
             raise StudyError(
-                f"{name}:{n}: there are {len(cells)} values for {wide} columns; are decimal commas "
-                "between commas? Write decimal points, or separate by semicolons"
+                f"{name}:{n}: there are {len(cells)} values for {width} columns; are decimal "
+                "commas between commas? Write decimal points, or separate by semicolons"
             )
         rows.append(cells)
         numbers.append(n)
@@ -168,6 +171,8 @@ def read(path: Path, words: tuple[Word, ...]) -> Table:
     used = {column.place for column in columns.values()}
     unused = tuple(h for (place, _), h in zip(found, heads, strict=True) if place not in used and h)
     how = f"{SEPARATORS[separator]}, decimal {SIGNS[decimal]}, {how_named}"
+    if split is not lines_of_file:
+        how += "; forces in a column for each pressure or contraction"
     if text_lines:
         how += f"; lines of words between the numbers: {_listed(text_lines)}"
     return Table(path, rows, numbers, decimal, columns, unused, how)
@@ -326,8 +331,9 @@ def _columns(
     if best is None:
         if any(headers.read(cell, words).quantity for cell in first[1]):
             raise StudyError(
-                f"{name}:{first[0]}: numbers stand among the names of columns; a table with a "
-                "column for each pressure is not read: write a row for each point"
+                f"{name}:{first[0]}: numbers stand among the names of columns; in a table with a "
+                "column for each pressure these have their unit, as 1 bar, beside a column of "
+                "contraction, stroke or length"
             )
         seen = above[-1][1] if above else []
         there = f"there are {', '.join(map(printable, seen))}" if seen else "there are only numbers"

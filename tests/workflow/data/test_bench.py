@@ -33,6 +33,7 @@ def right(p, e, f):
     return f"{p:g},{e:g},{f:g}"
 
 
+HEAD_OF_PROJECT = "pressure_MPa,contraction,force_N\n"
 SERIES_TIME = np.arange(4000) * 0.01
 FILES = {  # name: text or bytes
     "project": written("pressure_MPa,contraction,force_N\n", right),
@@ -139,6 +140,60 @@ FILES = {  # name: text or bytes
     + written("pressure_MPa,contraction,force_N\n", right, TRUE[3:], "end of test\n"),
 }
 
+PAIRS = [(e, low, high) for (_, e, low), (_, _, high) in zip(TRUE[:3], TRUE[3:], strict=True)]
+
+
+def table(head: str, row) -> str:
+    """With a column for each of both pressures."""
+    return head + "".join(f"{row(*each)}\n" for each in PAIRS)
+
+
+FILES |= {
+    "a column for each pressure": table(
+        "contraction,0.2 MPa,0.4 MPa\n", lambda e, low, high: f"{e},{low},{high}"
+    ),
+    "forces at pressures": table(
+        "Contraction (%);F at 2 bar;F at 4 bar\n",
+        lambda e, low, high: comma(f"{100 * e:g};{low};{high}"),
+    ),
+    "pressures with a decimal comma, empty cells": table(
+        "Hub [mm];0,2 MPa;0,4 MPa;0,6 MPa\n",
+        lambda e, low, high: comma(f"{LENGTH * e:.1f};{low};{high};"),
+    ),
+    "columns for pressures, units in a row": table(
+        "No.;Length;p = 200 kPa;p = 400 kPa;Remark\n;mm;kN;kN;\n",
+        lambda e, low, high: f"1;{LENGTH * (1 - e):g};{low / 1e3:g};{high / 1e3:g};ok",
+    ),
+    "pressures above the names": table(
+        "Pressure [bar];2;4\nContraction [%];Force [N];Force [N]\n",
+        lambda e, low, high: f"{100 * e:g};{low};{high}",
+    ),
+    "pressures above pairs of columns": table(
+        "2 bar;;4 bar\nh [%];F [N];h [%];F [N]\n",
+        lambda e, low, high: f"{100 * e:g};{low};{100 * e:g};{high}",
+    ),
+    "a corner for both": table(
+        "h [%] \\ p [bar]\t2\t4\n", lambda e, low, high: f"{100 * e:g}\t{low}\t{high}"
+    ),
+    "a column for each contraction": "Pressure [bar];0 %;5 %;10 %\n"
+    "2;620;410.5;251\n4;1240;900.5;640\n",
+    "one pressure in a name, and words below": "# A\nstroke_mm\tF_0.2MPa_N\tF_0.4MPa_N\n"
+    "0\t620\t1240\n10\t410.5\t900.5\n20\t251\t640\nend of test\n",
+    "an exported measurement": "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\n\n"
+    + written(
+        "X_Value\tPressure (bar)\tForce (N)\tContraction (%)\tComment\n",
+        lambda p, e, f: comma(f"1\t{10 * p:.3f}\t{f:.3f}\t{100 * e:.3f}"),
+    ),
+    "relative lengths": written(
+        "Pressure [bar];L/L0 [-];Force [N]\n", lambda p, e, f: f"{10 * p:g};{1 - e:g};{f}"
+    ),
+    "a table of a text": written(
+        "| pressure [bar] | contraction [%] | force [N] |\n|---|---|---|\n",
+        lambda p, e, f: f"| {10 * p:g} | {100 * e:g} | {f} |",
+    ),
+    "old line ends": written(HEAD_OF_PROJECT, right).replace("\n", "\r"),
+}
+
 
 def read(tmp_path, text):
     path = tmp_path / "forces.csv"
@@ -149,7 +204,7 @@ def read(tmp_path, text):
 @pytest.mark.parametrize("name", FILES)
 def test_a_file_is_read_right(tmp_path, name):
     found = read(tmp_path, FILES[name])
-    np.testing.assert_allclose(found.measured, TRUE, rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(sorted(map(tuple, found.measured)), TRUE, rtol=1e-7, atol=1e-9)
     np.testing.assert_allclose(sorted(map(tuple, found.points)), TRUE, rtol=1e-7, atol=1e-9)
     assert any("pressure: " in line for line in found.said)
     assert any(" of " in line and "points used" in line for line in found.said)
@@ -190,9 +245,25 @@ REFUSED = {  # text, what the line says
     "two forces": ("F [N],pressure_MPa,contraction,force_N\n1,0.2,0,1\n", "both 'F \\[N\\]' and"),
     "no header": ("0.2,0,620\n0.2,0.1,251\n", "no line above the numbers names the columns"),
     "unknown headers": ("a,b,c\n0.2,0,620\n0.2,0.1,251\n", "there are a, b, c"),
-    "a column for each pressure": (
-        "contraction [%],1 bar,2 bar\n0,310,620\n5,200,410\n",
-        "forces.csv:1: numbers stand among the names of columns; a table with a column for each",
+    "a column for each pressure, without a unit": (
+        "contraction [%];0.2;0.4\n0;620;1240\n5;410;900\n",
+        "forces.csv:1: numbers stand among the names of columns; in a table with a column for each",
+    ),
+    "a column for each pressure over time": (
+        "time [s];2 bar;4 bar\n0;620;1240\n5;410;900\n",
+        "these have their unit, as 1 bar, beside a column of contraction, stroke or length",
+    ),
+    "a column for each pressure, of another unit": (
+        "contraction [%];200 MPa;400 MPa\n0;620;1240\n5;410;900\n",
+        "would be 400 MPa; perhaps they are in kPa, that is 0.4 MPa",
+    ),
+    "decimal commas between columns for pressures": (
+        "contraction [%],2 bar,4 bar\n0,620,5,1240,5\n5,410,900\n",
+        "forces.csv:2: there are 5 values for 3 columns; are decimal commas",
+    ),
+    "relative lengths that are contractions": (
+        "p [bar];L/L0;F [N]\n2;0;620\n2;0.1;251\n",
+        "lengths of 0 to 0.1 of that at rest .* perhaps contractions",
     ),
     "no force": (
         "pressure_MPa,contraction,mass\n0.2,0,620\n",
@@ -256,6 +327,17 @@ def test_what_looks_wrong_is_refused_in_a_line(tmp_path, name):
         read(tmp_path, text)
     assert "\n" not in str(caught.value)
     assert "forces.csv" in str(caught.value)
+
+
+def test_a_loop_in_a_table_with_a_column_for_each_pressure(tmp_path):
+    """Rows go up and down again; what was written is named."""
+    rows = [*PAIRS, *[(e, low - 20, high - 30) for e, low, high in PAIRS[-2::-1]]]
+    text = "contraction [%];F at 2 bar;F at 4 bar\n"
+    text += "".join(f"{100 * e:g};{low};{high}\n" for e, low, high in rows)
+    found = read(tmp_path, text)
+    assert len(found.measured) == 10
+    assert found.loops == pytest.approx({0.2: 20, 0.4: 30})
+    assert "forces in a column for each pressure" in found.said[0]
 
 
 def test_noise_in_set_pressures(tmp_path):
