@@ -74,7 +74,7 @@ def flags(case: Case, mesh: Path) -> dict[str, str | float]:
         layers = _layers(muscle, case.thread)
         values |= {
             "thread_layers": len(layers),
-            "layers": ",".join(repr(number) for layer in layers for number in layer),
+            "layers": ",".join(repr(float(number)) for layer in layers for number in layer),
             "slack_width": case.numerics.slack.width_of(case.thread),
         }
     values |= MODELS[case.model].flags(case)
