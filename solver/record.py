@@ -5,8 +5,9 @@ Layout, version 5
 (512 bytes)  one line of text: file type, layout, and the SHA-256 of all that follows these bytes,
              in what HDF5 calls the user block; programs that read HDF5 skip it
 /            attrs: filetype "muscle-case", layout, key, case (canonical JSON, solver/case.py),
-             code (digest of the sources that solved it), status, reason, log (its end, if failed),
-             effects (names of those that are on), unknowns (beside contraction and pressure)
+             code (digest of the sources that solved it), version (of the software, for people),
+             status, reason, log (its end, if failed), effects (names of those that are on),
+             unknowns (beside contraction and pressure)
 /parameters  one scalar dataset per number of the case, in groups as in the JSON;
              attrs: units, and relative_to where it is a multiple of something
 /states      datasets of shape (state,) as in VARIABLES, attrs: units, long_name; and of
@@ -155,6 +156,7 @@ def _write(file: Any, case: Case, solution: Solution) -> None:
         key=case.key,
         case=case.canonical(),
         code=solution.code or code_digest(case.model, law=case.rubber.law()),
+        version=sources.version(),
         status=solution.status.value,
         reason=solution.reason,
         log=solution.log,

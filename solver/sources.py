@@ -14,6 +14,7 @@ import ast
 import hashlib
 import json
 import os
+import tomllib
 from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
@@ -115,6 +116,17 @@ def digest(files: tuple[str, ...]) -> str:
     """Digest of names and contents of files of the checkout."""
     text = "".join(f"{file}\n{(ROOT / file).read_text()}" for file in files)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+@cache
+def version() -> str:
+    """Version of the software, that of pyproject.toml.
+
+    It stands in what is made and decides nothing: another version with the same sources makes the
+    same results, so it is no part of a digest.
+    """
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    return str(project["version"])
 
 
 def closure(modules: Iterable[str]) -> set[str]:

@@ -1,3 +1,1 @@
 """From the study file to cases, and from records to dataset, figures and verdicts."""
-
-VERSION = "0.1.0"

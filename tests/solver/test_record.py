@@ -10,7 +10,7 @@ import numpy as np
 import pint
 import pytest
 
-from solver import record
+from solver import record, sources
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.models import MODELS
@@ -89,6 +89,19 @@ def test_a_bare_tube_can_be_written(tmp_path, make_case, bare_tube, solution):
     case = make_case(model="solid", muscle=bare_tube, effects=Effects(end="sliding"), path=path)
     record.write(tmp_path / "a.h5", case, solution)
     assert record.read(tmp_path / "a.h5")[0].muscle == bare_tube
+
+
+def test_the_version_is_said_and_decides_nothing(written, case, solution, monkeypatch):
+    """A record of another version is right as long as the sources are the same."""
+    with h5py.File(written) as file:
+        assert file.attrs["version"] == sources.version()
+    monkeypatch.setattr(sources, "version", lambda: "99.0")
+    record.write(written.with_name("other.h5"), case, solution)
+    with h5py.File(written.with_name("other.h5")) as file:
+        assert file.attrs["version"] == "99.0"
+    sources.digest.cache_clear()
+    for path in (written, written.with_name("other.h5")):
+        assert record.code_of(path) == record.code_digest(case.model, law=case.rubber.law())
 
 
 def test_numbers_have_units(written):

@@ -419,6 +419,7 @@ def copy(tmp_path):
     """A copy of the tree and a function that runs the script above in it."""
     for name in ("geometry", "solver", "workflow", "config"):
         shutil.copytree(ROOT / name, tmp_path / name)
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
     (tmp_path / "script.py").write_text(SCRIPT)
 
     def run(text: str) -> subprocess.CompletedProcess[str]:

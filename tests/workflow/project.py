@@ -26,7 +26,7 @@ def hook(event, given):
 
 sys.addaudithook(hook)
 """  # the head of a program that is told which files it opens, in ``opened``
-PARTS = ("Snakefile", "config", "geometry", "profiles", "solver", "workflow")
+PARTS = ("Snakefile", "config", "geometry", "profiles", "pyproject.toml", "solver", "workflow")
 STUDY = """\
 materials:
   nbr: {c10: 0.345083, c01: 0.083805}

@@ -12,6 +12,7 @@ from workflow.programs import run
 
 ROOT = Path(__file__).parents[2]
 SETUP = (ROOT / "setup.sh").read_text()
+PARTS = ("geometry", "solver", "workflow", "config", "profiles", "Snakefile", "pyproject.toml")
 SMOKE = ROOT / "config" / "smoke" / "study.yaml"
 
 
@@ -20,7 +21,15 @@ def muscle(tmp_path):
     """A function that calls the launcher of setup.sh in a folder that has modules of our names."""
     programs = tmp_path / "checkout" / ".venv" / "bin"
     programs.mkdir(parents=True)
-    for name in ("geometry", "solver", "workflow", "config", "profiles", "Snakefile"):
+    for name in (
+        "geometry",
+        "solver",
+        "workflow",
+        "config",
+        "profiles",
+        "Snakefile",
+        "pyproject.toml",
+    ):
         (tmp_path / "checkout" / name).symlink_to(ROOT / name)
     (programs / "python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
     (programs / "python").chmod(0o755)

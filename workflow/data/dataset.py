@@ -30,8 +30,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-import workflow
 from geometry.files import atomic_write
+from solver import sources
 from workflow.data import bench, in_time, labelled, vibration
 from workflow.data.records import Curve
 from workflow.data.reference import ForceMap
@@ -80,7 +80,7 @@ def build(
         title="States of pneumatic muscles" + (f" of the study {study}" if study else ""),
         study=study,
         Conventions="CF-1.11",
-        source=f"pneumatic-muscle {workflow.VERSION}",
+        source=f"pneumatic-muscle {sources.version()}",
         code=" ".join(sorted(set(table.curves["code"]) - {""})),
         filetype="muscle-dataset",
         layout=LAYOUT,
