@@ -53,7 +53,7 @@ rule all:
 rule everything:
     default_target: REPORTING
     input:
-        [] if REPORTING else rules.all.input,
-        pages(),
+        rules.all.input,
+        REPORTED if REPORTING else [f"{RESULTS}/report/{page}.html" for page in PAGES],
     message:
         "All is there; snakemake --report results/report.html makes the report"

@@ -148,3 +148,30 @@ def map_digest(wildcards):
     asked = PLAN.study.maps[wildcards.map]
     made_of = PLAN.study.muscles[asked.muscle], PLAN.study.variants[asked.variant]
     return digest(repr((asked, made_of)))
+
+
+def added_to(page):
+    """What is added to the table of a page when analyses end, so that the page comes after that."""
+    if page != "failures":
+        return []
+    fitting = [each for each in ANALYSES.values() if each.fits(PLAN.study) and each.solves_cases]
+    return [f"{RESULTS}/tables/{each.failures}" for each in fitting]
+
+
+def reported(page):
+    """A page that is there, as the report has it."""
+    return report(
+        f"{RESULTS}/report/{page.name}.html",
+        caption=os.path.relpath(page.caption, CHECKOUT),
+        category=page.chapter,
+        labels={"page": page.title},
+    )
+
+
+def explored():
+    """The explorer, as the report has it, if it is there."""
+    file = f"{RESULTS}/explorer.html"
+    if not Path(file).exists():
+        return []
+    words = "workflow/report/explorer.rst"
+    return [report(file, caption=words, category="0 Explorer", labels={"page": "All curves"})]
