@@ -30,8 +30,9 @@ def composition(case: Case) -> str:
     """The includes of a program: one per active effect."""
     threads = case.effects.threads if case.muscle.braid else "none"
     files = [f"threads_{threads}.idp", *MODELS[case.model].composition(case)]
-    remembers = "macro remembers() // EOM\n" if case.remembers else ""
-    return remembers + "".join(f'include "{name}"\n' for name in files)
+    macros = {"remembers": case.remembers or case.vibrates, "vibrates": case.vibrates}
+    said = "".join(f"macro {name}() // EOM\n" for name, is_so in macros.items() if is_so)
+    return said + "".join(f'include "{name}"\n' for name in files)
 
 
 def waypoint_text(case: Case, way: list[Waypoint], *, started: bool = False) -> str:

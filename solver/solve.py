@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.seal import is_sealed, why_none
-from solver import continuity, files, freefem, in_time, output, program
+from solver import continuity, files, freefem, in_time, output, program, vibrations
 from solver.case import Case
 from solver.continuity import Solved, States
 from solver.judge import judged
@@ -216,6 +216,8 @@ def _follow(
             )
         else:
             in_time.write(case, work)
+        if case.vibrates:
+            vibrations.write(case, work)
         if start:
             (work / "start.txt").write_bytes(start)
         given = program.flags(case, mesh.resolve())
@@ -237,6 +239,8 @@ def _follow(
             output.collect(case, way, work, largest, states, fields)
             if case.path.history is not None:
                 in_time.add(states, output.rows(work / "times.csv", len(way)))
+            if case.vibrates:
+                vibrations.collect(case, way, work, fields)
             starts = output.starts(case, way, work, largest)
             searched = output.searched(work / "zero.txt")
         except output.RUBBISH as error:

@@ -49,6 +49,7 @@ MODEL = Model(
         "volume",
         "stiffness",
         "deformed_shape",
+        "dynamic_stiffness",
     ),
     fields={"meridian": slice(0, 4)},
     composition=composition,

@@ -57,9 +57,11 @@ MODEL = Model(
         "stiffness",
         "stress",
         "deformed_shape",
+        "dynamic_stiffness",
     ),
     fields={"corners": slice(0, 4), "stress": slice(4, 8)},
     flags=flags,
     composition=composition,
+    in_time=True,
     lacks="mesh of solid",
 )
