@@ -21,6 +21,8 @@ MOST_STEPS = 20_000
 TONNE_PER_KG = 1e-3
 LINEAR = 0.999  # ratio of pressures above which the flow goes with their difference
 FIRST, FIRST_GROWTH = 1e-6, 1.2  # of the steps behind a load that came at once, and their growth
+FIRST_OF_MASS = 1e-3  # in shorter ones its way is less than rounding of its place
+JUMP_STEPS = 64  # in which what comes at once is brought on, for its work
 PRELOAD_STEPS = 40  # in a time of preload, each longer than the one before
 
 
@@ -97,6 +99,9 @@ class Valve:
 class History:
     """Times of the stops of a path, and what goes with them.
 
+    Two stops of one time are a jump: the second is reached at once, by a rubber that has no time to
+    relax, and with a mass at the length of the first.
+
     Attributes
     ----------
     times : of the stops, from 0
@@ -131,8 +136,14 @@ class History:
         for time in times:
             if not is_number(time):
                 raise UnsolvableCase("times", time, "finite numbers (s)")
-        if times[0] != 0 or any(b <= a for a, b in pairwise(times)):
-            raise UnsolvableCase("times", times[0], "times that rise from 0 (s)")
+        falls = any(b < a for a, b in pairwise(times))
+        thrice = any(c == a for a, c in zip(times, times[2:], strict=False))
+        if times[0] != 0 or falls or thrice or times[-1] == 0:
+            allowed = "times that rise from 0, two of one time where it jumps (s)"
+            raise UnsolvableCase("times", times[0], allowed)
+        if self.valve is not None and any(b == a for a, b in pairwise(times)):
+            allowed = "times that rise: behind a valve no pressure jumps, switch its supply (s)"
+            raise UnsolvableCase("times", times[0], allowed)
         for name in ("preload", "mass"):
             value = getattr(self, name)
             if not (is_number(value) and value >= 0):
@@ -153,6 +164,17 @@ class History:
     def moves(self) -> bool:
         """Whether there is more to it than the rubber: a mass, a valve."""
         return self.mass > 0 or self.valve is not None
+
+    @property
+    def first(self) -> float:
+        """Share of a step with which one begins behind what came at once."""
+        return FIRST_OF_MASS if self.mass else FIRST
+
+    def relaxes_to(self, stop: int) -> bool:
+        """Whether what came at once relaxes on the way to a stop, in steps that begin short."""
+        if stop == 1:
+            return self.starts_at_once
+        return self.times[stop - 1] == self.times[stop - 2]
 
     def cycles(self) -> list[tuple[int, int]]:
         """First and last stop of every whole cycle; of all, where there are none."""
@@ -186,10 +208,14 @@ def sampled(
 def through(table: Sequence[tuple[float, float]], times: Sequence[float]) -> tuple[float, ...]:
     """Values at some times, straight between the rows (time, value) of a table.
 
-    Of two rows of one time the second holds from there on, the first up to it: a jump.
+    Of two rows of one time the second holds from there on, the first up to it: a jump. Two times
+    that are one have the values before and behind it.
     """
 
-    def at(time: float) -> float:
+    def at(k: int) -> float:
+        time, jumped = times[k], k > 0 and times[k - 1] == times[k]
+        if jumped and any(row[0] == time for row in table):
+            return [value for t, value in table if t == time][-1]
         before = [row for row in table if row[0] < time]
         after = [row for row in table if row[0] >= time]
         if not before:
@@ -199,7 +225,13 @@ def through(table: Sequence[tuple[float, float]], times: Sequence[float]) -> tup
         (t0, v0), (t1, v1) = before[-1], after[0]
         return v0 + (v1 - v0) * (time - t0) / (t1 - t0)
 
-    return tuple(_short(at(time)) for time in times)
+    return tuple(_short(at(k)) for k in range(len(times)))
+
+
+def with_jumps(times: Sequence[float], table: Sequence[tuple[float, float]]) -> tuple[float, ...]:
+    """The times, and twice those at which a table jumps."""
+    jumps = [a for (a, _), (b, _) in pairwise(table) if a == b and a <= times[-1]]
+    return tuple(sorted([time for time in times if time not in jumps] + 2 * jumps))
 
 
 def _short(value: float) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.case import Case
-from solver.history import FIRST, FIRST_GROWTH, TONNE_PER_KG, Start
+from solver.history import FIRST_GROWTH, TONNE_PER_KG, Start
 from solver.load_path import Waypoint
 
 
@@ -46,7 +46,7 @@ def history_text(case: Case) -> str:
     to_start = case.path.start.ways()[0]
     holding = history.preload_steps()
     lines = [
-        f"{unloaded} {FIRST!r} {FIRST_GROWTH!r} {float(history.mass * TONNE_PER_KG)!r}",
+        f"{unloaded} {history.first!r} {FIRST_GROWTH!r} {float(history.mass * TONNE_PER_KG)!r}",
         " ".join([str(int(valve is not None)), *(repr(float(value)) for value in gas)]),
         str(len(to_start)),
         *(

@@ -9,7 +9,7 @@ import pytest
 from geometry.muscle import Braid, Muscle
 from solver import balance, record
 from solver.case import Case
-from solver.history import History, Start, Valve, Wave, sampled, through
+from solver.history import History, Start, Valve, Wave, sampled, through, with_jumps
 from solver.load_path import LoadPath
 from solver.memory import Memory
 from solver.models import MODELS
@@ -196,6 +196,44 @@ def test_a_preload_is_between_unloaded_and_relaxed(make_case, solve_case):
     assert held[-1] == pytest.approx(relaxed, rel=1e-5)
 
 
+@pytest.mark.parametrize("model", ["cylinder", "membrane"])
+def test_a_pressure_that_jumps(make_case, solve_case, nbr, model):
+    """At once the rubber is 1.42 times as stiff; then it relaxes, and energies balance."""
+    times = (0.0, 0.0, *np.geomspace(0.01, 10, 40).tolist())
+    history = History(times=times, start=Start.UNLOADED)
+    path = LoadPath(kind="isotonic", held=200.0, stops=(0.0, *[0.3] * 41), history=history)
+    solution = solve_case(make_case(model=model, path=path, memory=FLAT))
+    assert solution.status == "converged", solution.reason
+    rubber = MooneyRivlin(c10=1.42 * nbr.c10, c01=1.42 * nbr.c01)
+    elastic = LoadPath(kind="isotonic", held=200.0, stops=(0.0, 0.3))
+    sudden = solve_case(make_case(model=model, rubber=rubber, path=elastic)).states
+    found = solution.states["contraction"]
+    assert found[:2] == pytest.approx(sudden["contraction"], abs=1e-7)
+    assert np.all(np.diff(found) > 0)
+    work, stored = (solution.states[name][:2] for name in ("work", "energy"))
+    assert work[1] == pytest.approx(stored[1] - stored[0], rel=1e-3)
+    assert solution.states["dissipated"][1] == 0
+
+
+@pytest.mark.parametrize("model", ["cylinder", "membrane"])
+def test_a_mass_does_not_jump(make_case, solve_case, model):
+    """The pressure does, at the length that there is; then the mass begins to move from rest."""
+    times = (0.0, 0.0, *[0.0025 * k for k in range(1, 25)])
+    path = LoadPath(
+        kind="isotonic",
+        held=200.0,
+        stops=(0.0, *[0.3] * 25),
+        history=History(times=times, mass=20.0),
+    )
+    solution = solve_case(make_case(model=model, path=path, memory=FLAT))
+    assert solution.status == "converged", solution.reason
+    found, force = (solution.states[name] for name in ("contraction", "force"))
+    assert found[1] == pytest.approx(found[0], abs=1e-9)
+    assert force[1] > 700
+    way = (force[1] - 200) / 20 * 0.0025**2 / 2 / 0.3  # m of 0.3 m
+    assert found[2] - found[1] == pytest.approx(way, rel=0.02)
+
+
 # --- a mass and a valve --------------------------------------------------------------------------
 
 
@@ -310,7 +348,10 @@ def test_a_free_twist_has_no_memory(make_case):
     ("values", "said"),
     [
         ({"times": (0.0,)}, "times"),
-        ({"times": (0.0, 1.0, 1.0)}, "rise from 0"),
+        ({"times": (0.0, 1.0, 0.5)}, "rise from 0"),
+        ({"times": (0.0, 1.0, 1.0, 1.0)}, "two of one time"),
+        ({"times": (0.0, 0.0)}, "rise from 0"),
+        ({"times": (0.0, 0.0, 1.0), "valve": Valve(conductance=1e7)}, "switch its supply"),
         ({"times": (1.0, 2.0)}, "rise from 0"),
         ({"times": (0.0, 1.0), "preload": 1.0}, "preload = 1.0"),
         ({"times": (0.0, 1.0), "mass": -1}, "mass = -1"),
@@ -357,6 +398,12 @@ def test_what_is_no_valve(values, said):
 def test_a_table_may_jump():
     assert through(((0, 0), (1, 2), (1, 3), (2, 3)), (0, 0.5, 1, 1.5, 3)) == (0, 1, 2, 3, 3)
     assert through(((0, 0), (0, 0.3), (1, 0.3)), (0, 0.1)) == (0, 0.3)
+    table = ((0, 0), (1, 2), (1, 3), (2, 3))
+    times = with_jumps((0, 0.8, 1.6), table)
+    assert times == (0, 0.8, 1, 1, 1.6)
+    assert through(table, times) == (0, 1.6, 2, 3, 3)
+    assert with_jumps((0, 1, 2), table) == (0, 1, 1, 2)
+    assert with_jumps((0, 0.5), table) == (0, 0.5)
 
 
 def test_a_history_that_cannot_be_followed_ends_with_its_reason(make_case, solve_case, bare_tube):

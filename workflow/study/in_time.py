@@ -4,7 +4,16 @@ from collections.abc import Iterator
 from typing import Any
 
 from geometry.refusal import Refusal, build
-from solver.history import MOST_STEPS, History, Start, Valve, Wave, sampled, through
+from solver.history import (
+    MOST_STEPS,
+    History,
+    Start,
+    Valve,
+    Wave,
+    sampled,
+    through,
+    with_jumps,
+)
 from solver.load_path import LoadPath, PathKind
 from solver.memory import Memory
 from solver.refusal import UnsolvableCase
@@ -46,10 +55,14 @@ def paths(scene: Scene, held: float) -> dict[float, LoadPath]:
         remembered: dict[str, Any] = {"start": Start(entry.start), "preload": entry.preload}
         if entry.table is not None:
             period = entry.table[-1][0]
-            count = entry.cycles * entry.samples
-            times = tuple(float(f"{period * k / entry.samples:.12g}") for k in range(count + 1))
-            once = through(entry.table, times[: entry.samples + 1])
-            stops = once + once[1:] * (entry.cycles - 1)
+            even = [float(f"{period * k / entry.samples:.12g}") for k in range(entry.samples + 1)]
+            once = with_jumps(even, entry.table)
+            values = through(entry.table, once)
+            closed = int(values[-1] == values[0])  # else it jumps back where a cycle ends
+            times, stops = once, values
+            for number in range(1, entry.cycles):
+                later = (float(f"{number * period + time:.12g}") for time in once[closed:])
+                times, stops = (*times, *later), stops + values[closed:]
             history = History(times=times, period=period, **remembered)
             return {period: LoadPath(kind=kind, held=held, stops=stops, history=history)}
         found = {}
@@ -68,6 +81,10 @@ def paths(scene: Scene, held: float) -> dict[float, LoadPath]:
     valve = None
     if given.valve is not None:
         valve = build(Valve, given.valve.model_dump(), UnsolvableCase, "valve")
+    else:
+        times = with_jumps(times, given.supply)
+        if given.load is not None and not given.mass:
+            times = with_jumps(times, given.load)
     loads = through(given.load, times) if given.load is not None else None
     history = History(
         times=times,

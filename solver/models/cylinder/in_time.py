@@ -14,7 +14,7 @@ from scipy.optimize import OptimizeResult, root
 
 from solver.case import Case
 from solver.effects import Rubber
-from solver.history import AMBIENT, FIRST, FIRST_GROWTH, TONNE_PER_KG, Rate, Start
+from solver.history import AMBIENT, FIRST_GROWTH, JUMP_STEPS, TONNE_PER_KG, Rate, Start
 from solver.judge import judged
 from solver.load_path import Control, Waypoint
 from solver.models.cylinder import curve
@@ -25,6 +25,7 @@ from solver.record import Solution, unreached, variables
 
 Array = NDArray[np.float64]
 SHORTEST = 1 / 1024  # share of a step between stops
+PLACE = 1e-3  # share of a length, whose inertia is of the size of its equation
 JACOBIAN_STEP, CHORDS, EXACT = 1e-7, 8, 1e-12
 
 
@@ -127,11 +128,13 @@ class _Run:
     def go_to(self, stop: int) -> bool:
         """Go from the stop before to this one, in as many steps as needed."""
         times, done, share, growth = self.history.times, 0.0, 1.0, 2.0
-        if stop == 1 and self.history.starts_at_once:
-            share, growth = FIRST, FIRST_GROWTH
+        if self.history.relaxes_to(stop):
+            share, growth = self.history.first, FIRST_GROWTH
         start, end = times[stop - 1], times[stop]
         old = [self._target(kind, stop - 1) for kind in self.kinds]
         new = [self._target(kind, stop) for kind in self.kinds]
+        if end == start:
+            return self._jump(old, new)
         if self.history.valve is not None:
             old[1] = new[1]  # the supply is switched
         while done < 1:
@@ -146,11 +149,32 @@ class _Run:
         self.time = end
         return True
 
+    def _jump(self, old: list[float], new: list[float]) -> bool:
+        """From controls to others at once; a mass stays where it is."""
+        kinds = self.kinds
+        if self.history.mass and kinds[0] is Control.FORCE:
+            self.kinds = Control.CONTRACTION, kinds[1]
+            old, new = [[1 - self.state.lz, ends[1]] for ends in (old, new)]
+        done, share, found = 0.0, 1 / JUMP_STEPS, True
+        while done < 1 and found:
+            there = min(done + share, 1.0)
+            goal = [a + there * (b - a) for a, b in zip(old, new, strict=True)]
+            if self._step(0.0, goal, holding=True):
+                done = there if there < 1 - 1e-9 else 1.0
+            else:
+                share /= 2
+                found = share > SHORTEST / JUMP_STEPS
+        self.kinds = kinds
+        speed = self.speed.last
+        self.length, self.speed = Rate(self._length(self.state)), Rate(speed)
+        self.before = None
+        return found
+
     def _step(self, length: float, goal: list[float], *, holding: bool = False) -> bool:
         """One step of time to the two controls; nothing changes where there is none."""
         if self.memory is not None:
             self.memory.freeze(length)
-        for rate in (self.length, self.speed, self.gas):
+        for rate in (self.length, self.speed, self.gas) if length else ():
             rate.begin(length)
 
         def off(x: Array) -> Array:
@@ -163,7 +187,7 @@ class _Run:
             return np.array(values + [torque] * self.cylinder.free)
 
         guesses = [self.at]
-        if self.before is not None:
+        if self.before is not None and self.step:
             guesses.insert(0, self.at + (self.at - self.before) * length / self.step)
         for guess in guesses:
             with np.errstate(all="ignore"):
@@ -181,6 +205,8 @@ class _Run:
         if kind is Control.FORCE and self.history.mass and not holding:
             speed = self.length.of(self._length(state))
             inertia = self.history.mass * TONNE_PER_KG * self.speed.of(speed)
+            stiffness = self.history.mass * TONNE_PER_KG * self.speed.slope * self.length.slope
+            scale += PLACE * stiffness * self.case.muscle.length
             return float(state.force + inertia - value) / scale
         valve = self.history.valve
         if kind is Control.PRESSURE and valve is not None and not holding:
@@ -197,9 +223,10 @@ class _Run:
         old, lost = self.state, self.dissipation
         self.before, self.at, self.step = self.at, x, length
         self.state = new = self.cylinder.state(x)
-        self.speed.end(self.length.of(self._length(new)), length)
-        self.length.end(self._length(new), length)
-        self.gas.end(self._content(new), length)
+        if length:
+            self.speed.end(self.length.of(self._length(new)), length)
+            self.length.end(self._length(new), length)
+            self.gas.end(self._content(new), length)
         if self.memory is not None:
             self.memory.advance(self._stretch(), length)
         self.dissipation = self._dissipation()

@@ -132,6 +132,22 @@ def test_a_supply_jumps_and_a_load_too(solved):
     assert path.history.mass == 5
 
 
+def test_a_pressure_that_jumps_is_there_twice(tmp_path):
+    table = "table: [[0, 0.1], [1, 0.3], [1, 0.2], [2, 0.2]]"  # and back where a cycle ends
+    plan = plan_of(tmp_path, "table: [[0, 0.1], [1, 0.3], [2, 0.1]]", table)
+    (key,) = plan.scenes["own"].values()
+    path = plan.cases[key].case.path
+    assert path.history.times == (0, 0.5, 1, 1, 1.5, 2, 2, 2.5, 3, 3, 3.5, 4)
+    assert path.stops == (0.1, 0.2, 0.3, 0.2, 0.2, 0.2, 0.1, 0.2, 0.3, 0.2, 0.2, 0.2)
+    assert path.history.cycles() == [(0, 5), (5, 11)]
+    supply = "valve: {conductance: 1e7, dead_volume: 1000}\n"
+    plan = plan_of(tmp_path, f"      {supply}", "")
+    (key,) = plan.scenes["drop"].values()
+    path = plan.cases[key].case.path
+    assert path.history.times[:3] == (0, 0, 0.002)
+    assert path.stops[:2] == (0, 0.3)
+
+
 def test_a_curve_out_of_time_knows_no_memory(solved):
     plan = solved[0]
     (key,) = plan.scenes["curve"].values()
