@@ -41,7 +41,7 @@ def collect(
         table = files.read(work / f"fields_{number}.txt", largest_fields)
         if table is not None:
             fields[stop] = _fields(case.model, table)
-        for name in variables(case.path).keys() & row.keys():
+        for name in variables(case).keys() & row.keys():
             states[name][stop] = row[name]
     if len({len(table) for tables in fields.values() for table in tables.values()}) > 1:
         raise ValueError("fields of different sizes")

@@ -13,7 +13,8 @@ Layout, version 5
 /states      datasets of shape (state,) as in VARIABLES, attrs: units, long_name; and of
              texts: status; flags, words of solver/status.py with spaces between; note, a sentence.
              States are in the order of the path's stops, then that of zero force if asked for.
-             What was not reached is NaN. Of a path in time there are those of IN_TIME too.
+             What was not reached is NaN. Of a path in time there are those of IN_TIME too, of a
+             muscle with a sleeve that of SLEEVED.
 /fields/<n>  of state n, where asked for. Membrane: meridian (node, 4) = R, Z, r, z [mm].
              Solid: corners (3 triangles, 4) = R, Z, r, z [mm] and stress (3 triangles, 4) =
              Cauchy rr, rz, zz, tt [MPa], three rows per triangle, discontinuous between them.
@@ -40,11 +41,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.braid import Kind
 from geometry.files import atomic_write
 from solver import sources
 from solver.case import Case
 from solver.declared import Declared
-from solver.load_path import LoadPath
 from solver.status import CaseStatus, Flag, StateStatus
 
 FILETYPE, LAYOUT = "muscle-case", 5
@@ -83,6 +84,9 @@ VARIABLES = {
     "iterations": ("1", "Newton iterations since the state before"),
     "cutbacks": ("1", "steps given up since the state before"),
 }
+SLEEVED = {  # beside them, of a muscle with a sleeve
+    "contact_pressure": ("MPa", "pressure of the sleeves on the tube at mid-length"),
+}
 DYNAMIC = "dynamic_stiffness"  # name among the fields of a state
 IN_TIME = {  # beside them, of a path in time
     "time": ("s", "time since the first stop"),
@@ -91,9 +95,11 @@ IN_TIME = {  # beside them, of a path in time
 }
 
 
-def variables(path: LoadPath) -> dict[str, tuple[str, str]]:
-    """Unit and long name of what is recorded of a state of a path."""
-    return VARIABLES | (IN_TIME if path.history is not None else {})
+def variables(case: Case) -> dict[str, tuple[str, str]]:
+    """Unit and long name of what is recorded of a state of a case."""
+    sleeved = any(layer.kind is Kind.SLEEVE for layer in case.muscle.layers)
+    timed = case.path.history is not None
+    return VARIABLES | (SLEEVED if sleeved else {}) | (IN_TIME if timed else {})
 
 
 class NoRecord(ValueError):
@@ -165,7 +171,7 @@ def _write(file: Any, case: Case, solution: Solution) -> None:
     )
     _write_parameters(file.create_group("parameters"), case)
     states = file.create_group("states")
-    for name, (unit, long_name) in variables(case.path).items():
+    for name, (unit, long_name) in variables(case).items():
         data = states.create_dataset(name, data=solution.states[name])
         data.attrs.update(units=unit, long_name=long_name)
     words: dict[str, list[str]] = {
@@ -262,9 +268,7 @@ def _read(file: Any, size: int) -> tuple[Case, Solution]:
         log=file.attrs["log"],
         unknowns=int(file.attrs["unknowns"]),
         code=file.attrs["code"],
-        states={
-            name: declared.dataset(states, name, "f", shape)[()] for name in variables(case.path)
-        },
+        states={name: declared.dataset(states, name, "f", shape)[()] for name in variables(case)},
         state_status=[StateStatus(text) for text in texts("status")],
         flags=[frozenset(map(Flag, text.split())) for text in texts("flags")],
         notes=texts("note"),

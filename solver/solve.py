@@ -78,7 +78,7 @@ class _Solver:
 
         What lies behind an invalid state on its way is taken from another way, if that leads there.
         """
-        names = variables(case.path)
+        names = variables(case)
         states, fields = solved = unreached(case.path.states, names), dict[int, States]()
         count, lost, searched = len(case.path.stops), set[int](), None
         timed = case.path.history is not None
@@ -103,7 +103,7 @@ class _Solver:
 
     def onwards(self, case: Case, near: float) -> States | None:
         """States of a curve that goes on from one before a gap; None if it does not get there."""
-        start, found = self._starts.get(near), unreached(case.path.states)
+        start, found = self._starts.get(near), unreached(case.path.states, variables(case))
         if start is None:
             return None
         end = self._walk(case, case.path.way_from(near), found, {}, start)
@@ -126,7 +126,7 @@ class _Solver:
 
     def _add(self, case: Case, way: list[Waypoint], solved: Solved, lost: set[int]) -> "_End":
         """Follow a way, and add what it reaches for the first time or better to what is known."""
-        found, its_fields = unreached(case.path.states, variables(case.path)), dict[int, States]()
+        found, its_fields = unreached(case.path.states, variables(case)), dict[int, States]()
         end = self._walk(case, way, found, its_fields)
         states, fields = solved
         name, zero = case.path.kind.swept.variable, len(case.path.stops)
@@ -294,7 +294,7 @@ def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solut
     return Solution(
         status=status,
         reason=reason,
-        states=unreached(count, variables(case.path)),
+        states=unreached(count, variables(case)),
         state_status=[StateStatus.NOT_REACHED] * count,
         log=log,
     )

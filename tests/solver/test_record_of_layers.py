@@ -3,12 +3,18 @@
 from types import SimpleNamespace
 
 import h5py
+import pandas as pd
 
 from geometry.muscle import LayeredBraid, Muscle
 from solver import record
 from solver.models.cylinder.curve import solve
-from workflow.figures import fig03
+from workflow.data import labelled, tidy
+from workflow.data.records import Curve
+from workflow.data.states import SceneData, Table
+from workflow.figures import fig03, general
 from workflow.figures.muscle_drawing import laid_open
+from workflow.plan.plan import plan
+from workflow.study.study import load
 
 
 def sleeved() -> Muscle:
@@ -47,3 +53,50 @@ def test_it_is_drawn_from_its_table():
         "layer, clockwise",
     ]
     fig03.draw(table)
+
+
+STUDY = """\
+materials:
+  nbr: {c10: 0.345083, c01: 0.083805}
+muscles:
+  inside: {inner_diameter: 20, wall_thickness: 2, length: 300, layer_depths: [0.3, 0.9],
+    threads: 60, lead: 144, thread_stiffness: 315, material: nbr}
+  outside: {base: inside, layers: [{kind: sleeve, gap: 1}]}
+scenes:
+  curves: {path: isobaric, muscles: [outside], pressure: 0.3, contraction: [0, 0.1],
+    models: [cylinder], quantities: contact_pressure,
+    figure: {y: contact_pressure}}
+"""
+
+
+def of_study(tmp_path, text, *, muscle):
+    """The curve of a study, the table and the dataset of it."""
+    path = tmp_path / "study.yaml"
+    path.write_text(text)
+    study = load(path)
+    planned = plan(study)
+    found = [
+        Curve(planned.cases[key].case, solve(planned.cases[key].case), (0.0, 0.1), place)
+        for place, key in planned.scenes["curves"].items()
+    ]
+    return SceneData("curves", planned, found), Table.of(found, {muscle: study.muscles[muscle]})
+
+
+def test_the_contact_pressure_is_in_the_dataset_where_there_is_a_sleeve(tmp_path):
+    """With its unit, in the figure that shows it; other muscles' datasets have no such variable."""
+    data, table = of_study(tmp_path, STUDY, muscle="outside")
+    expected = data.curves[0].solution.states["contact_pressure"]
+    assert expected.min() > 0.05
+    found = labelled.tree(table)["isobaric"].contact_pressure
+    assert found.attrs["units"] == "MPa"
+    assert found.squeeze().values.tolist() == expected.tolist()
+    tidy.write(table, tmp_path / "states.parquet")
+    assert "contact_pressure" in pd.read_parquet(tmp_path / "states.parquet")
+    rows = general.table(data)
+    assert rows["contact_pressure [MPa]"].tolist() == expected.tolist()
+
+    without = STUDY.replace("[outside]", "[inside]").replace("quantities: contact_pressure,", "")
+    without = without.replace("{y: contact_pressure}", "{y: force}")
+    _, table = of_study(tmp_path, without, muscle="inside")
+    assert "contact_pressure" not in labelled.tree(table)["isobaric"]
+    assert "contact_pressure" not in table.states

@@ -154,8 +154,8 @@ def test_force_is_the_slope_of_the_energy(make_case):
     assert slope == pytest.approx(states["force"][1], rel=1e-6)
 
 
-def contact_pressure(case, pressure, contraction):
-    """Of the sleeve on the tube, psi_A / (pi R_s^2 lz), by differences of the threads' energy."""
+def pressed(case, pressure, contraction):
+    """By the sleeve on the tube, psi_A / (pi R_s^2 lz), by differences of the threads' energy."""
     path = LoadPath(kind="isobaric", held=pressure, stops=(contraction,))
     model = Cylinder(case)
     states = solve_cylinder(case.__class__(**{**vars(case), "path": path})).states
@@ -178,7 +178,9 @@ def contact_pressure(case, pressure, contraction):
 def test_rubber_and_contact_share_the_pressure(make_case):
     """What the tube bears alone at that radius, and what the sleeve presses with, are p."""
     case = make_case(model="cylinder", path=isobaric(0.3, (0.1,)), numerics=SHARP, **S2)
-    contact, r = contact_pressure(case, 0.3, 0.1)
+    contact, r = pressed(case, 0.3, 0.1)
+    recorded = solve_cylinder(case).states["contact_pressure"]
+    assert recorded == pytest.approx([contact], rel=1e-7)
     tube = Muscle(inner_diameter=9.5, wall_thickness=1.6, length=200.0, braid=None)
     bare = make_case(model="cylinder", muscle=tube, rubber=LATEX, path=isobaric(0.0, (0.1,)))
     model = Cylinder(bare)
@@ -257,3 +259,43 @@ def test_one_family_twists(make_case):
     # held, one family of twice as many threads pulls as both do
     both = solve_cylinder(make_case(model="cylinder", path=isobaric(0.08, (0.0, 0.05)), **S1))
     assert found[1, "held"]["force"] == pytest.approx(both.states["force"], rel=1e-9)
+
+
+CONTACT = {"S1": (0.275824, 0.213718), "S2": (0.207866, 0.180167)}  # at 0.3 MPa, 0 and 10 %
+
+
+@pytest.mark.parametrize("name", CONTACT)
+@pytest.mark.parametrize(
+    ("model", "near"), [("cylinder", 1e-5), ("membrane", 2e-2), ("solid", 2e-2)]
+)
+def test_contact_pressure_at_mid_length(solve_case, make_case, name, model, near):
+    """That of the cylinder, but for the ends; and of the models with ends one and the same."""
+    numerics = {"cylinder": SHARP, "membrane": FINE, "solid": SOLID}[model]
+    path = isobaric(0.3, (0.0, 0.1))
+    found = solve_case(make_case(model=model, path=path, numerics=numerics, **MUSCLES[name]))
+    contact = found.states["contact_pressure"]
+    assert contact == pytest.approx(CONTACT[name], rel=near)
+    if model == "solid":
+        one = make_case(model="membrane", path=path, numerics=FINE, **MUSCLES[name])
+        assert contact == pytest.approx(solve_case(one).states["contact_pressure"], rel=2e-3)
+
+
+def test_a_loose_sleeve_does_not_press(make_case):
+    """And a muscle without one has no such quantity."""
+    stops = (0.5 * PRESSURES["S2"][1][1], 2 * PRESSURES["S2"][1][1])
+    path = LoadPath(kind="isometric", held=0.1, stops=stops)
+    case = make_case(model="cylinder", path=path, numerics=SHARP, **S2)
+    loose, taut = solve_cylinder(case).states["contact_pressure"]
+    assert loose == pytest.approx(0, abs=1e-9)
+    assert taut > 0.05
+    assert "contact_pressure" not in solve_cylinder(make_case(model="cylinder")).states
+
+
+def test_contact_pressure_of_a_rigid_sleeve(make_case):
+    """What very stiff threads press with, and nothing from them where they are slack."""
+    path = isobaric(0.3, (0.0, 0.1))
+    common = {"model": "cylinder", "path": path}
+    rigid = make_case(effects=Effects(stretch="rigid"), **common, **S2)
+    stiff = make_case(**common, **{**S2, "thread": Thread(stiffness=1e5)})
+    found, expected = (solve_cylinder(c).states["contact_pressure"] for c in (rigid, stiff))
+    assert found == pytest.approx(expected, rel=1e-3)

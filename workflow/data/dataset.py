@@ -90,7 +90,8 @@ def build(
 
 def _rows(table: pd.DataFrame, dim: str, columns: Mapping[str, tuple[str, str]]) -> xr.Dataset:
     """A table as variables along one dimension."""
-    variables = {name: (dim, _array(table[name]), attributes(columns[name])) for name in columns}
+    there = [name for name in columns if name in table]
+    variables = {name: (dim, _array(table[name]), attributes(columns[name])) for name in there}
     return xr.Dataset(variables)
 
 

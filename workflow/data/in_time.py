@@ -50,7 +50,7 @@ def _group(curves: Sequence[Curve]) -> xr.Dataset:
         "time": list(path.history.times),
     }
     dims, shape = tuple(axes), tuple(map(len, axes.values()))
-    known = variables(path)
+    known = {name: said for curve in curves for name, said in variables(curve.case).items()}
     own = [name for name in known if name not in axes]
     numbers = {name: np.full(shape, np.nan) for name in own}
     words = {name: np.full(shape, empty, object) for name, empty in WORDS.items()}
@@ -60,7 +60,7 @@ def _group(curves: Sequence[Curve]) -> xr.Dataset:
         labels = (place.muscle, place.model, place.variant, place.held)
         at = tuple(axis.index(v) for axis, v in zip(axes.values(), labels, strict=False))
         for name, values in numbers.items():
-            values[at] = solution.states[name]
+            values[at] = solution.states.get(name, np.nan)
         words["status"][at] = [status.value for status in solution.state_status]
         words["note"][at] = solution.notes
         said = (curve.key, solution.status.value, solution.reason)

@@ -74,7 +74,8 @@ class Group:
 
     def _variables(self) -> list[str]:
         """Numbers of a state that are no dimension."""
-        return [name for name in OF_STATE if name not in NO_VARIABLES and name not in self.axes]
+        known = [name for name in OF_STATE if name in self.states]
+        return [name for name in known if name not in NO_VARIABLES and name not in self.axes]
 
     def dataset(self) -> xr.Dataset:
         """Every state at its place."""

@@ -108,7 +108,7 @@ def not_solved(case: Case) -> tuple[Case, Solution]:
     return case, Solution(
         status=CaseStatus.NOT_SOLVED,
         reason="there is no record of it yet",
-        states=record.unreached(count, record.variables(case.path)),
+        states=record.unreached(count, record.variables(case)),
         state_status=[StateStatus.NOT_REACHED] * count,
     )
 

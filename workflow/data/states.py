@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from geometry.muscle import Muscle
 from solver.case import Case
 from solver.load_path import ZERO_FORCE, PathKind
-from solver.record import VARIABLES, Solution
+from solver.record import SLEEVED, VARIABLES, Solution
 from solver.status import CaseStatus, StateStatus
 from workflow.data import records
 from workflow.data.records import Curve, SolvedCase
@@ -44,6 +44,7 @@ OF_STATE = {  # columns of a state: unit, long name
     "point": ("", f"{STOP} of the path, or state of {ZERO}"),
     **CONTROLS,
     **VARIABLES,
+    **SLEEVED,  # where there is a muscle with a sleeve
     **{
         f"{name}_error": (VARIABLES[name][0], f"bound on the discretisation error of the {called}")
         for name, called in WITH_ERROR.items()
@@ -180,8 +181,12 @@ def state_rows(curves: Sequence[SolvedCase]) -> pd.DataFrame:
         "point": joined(([STOP] * len(p.stops) + [ZERO] * p.zero_force for p in paths), object),
         "load": np.full(sum(counts), np.nan),
     }
-    for name in VARIABLES:
-        columns[name] = joined(solution.states[name] for solution in solutions)
+    here = {name for solution in solutions for name in SLEEVED if name in solution.states}
+    for name in (*VARIABLES, *here):
+        columns[name] = joined(
+            solution.states.get(name, np.full(path.states, np.nan))
+            for solution, path in zip(solutions, paths, strict=True)
+        )
     exact = joined([*path.stops, np.nan][: path.states] for path in paths)
     kinds = np.repeat(np.array([path.kind.value for path in paths], object), counts)
     held = np.repeat(np.array([path.held for path in paths], float), counts)
@@ -199,7 +204,7 @@ def state_rows(curves: Sequence[SolvedCase]) -> pd.DataFrame:
     )
     columns["flags"] = joined(([" ".join(sorted(f)) for f in s.flags] for s in solutions), object)
     columns["note"] = joined((solution.notes for solution in solutions), object)
-    return pd.DataFrame({name: columns[name] for name in ("curve", *OF_STATE)})
+    return pd.DataFrame({name: columns[name] for name in ("curve", *OF_STATE) if name in columns})
 
 
 def _wanted(curve: SolvedCase) -> list[int]:
@@ -211,7 +216,7 @@ def _wanted(curve: SolvedCase) -> list[int]:
 
 # --- what a figure gets ---------------------------------------------------------------------------
 
-COLUMN = {name: f"{name} [{unit}]" for name, (unit, _) in VARIABLES.items()}
+COLUMN = {name: f"{name} [{unit}]" for name, (unit, _) in (VARIABLES | SLEEVED).items()}
 CONTRACTION, PRESSURE, FORCE = COLUMN["contraction"], COLUMN["pressure"], COLUMN["force"]
 DIAMETER, WALL = "inner_diameter [mm]", "wall_thickness [mm]"
 ANGLE, THREADS = "braid_angle [deg]", "threads [1]"
@@ -315,7 +320,8 @@ def numbered(scene: Scene, table: Table, quantities: Iterable[str]) -> pd.DataFr
     for control in (kind.held, kind.swept):
         columns[CONTROL[control.key]] = found[control.key]
     for name in quantities:
-        columns.setdefault(COLUMN[name], found[name].where(shown))
+        values = found[name] if name in found else pd.Series(np.nan, found.index)
+        columns.setdefault(COLUMN[name], values.where(shown))
         if name in WITH_ERROR:
             columns[error_of(COLUMN[name])] = found[f"{name}_error"]
     columns[STRETCH] = found["thread_stretch_max"].where(shown)

@@ -22,7 +22,9 @@ def write(table: Table, path: Path) -> None:
     """Write the table, whole or not at all."""
     rows = table.joined()
     fields = [
-        pa.field(name, _kind(name), metadata=attributes(column)) for name, column in COLUMNS.items()
+        pa.field(name, _kind(name), metadata=attributes(column))
+        for name, column in COLUMNS.items()
+        if name in rows
     ]
     arrays = [pa.array(rows[field.name], field.type, from_pandas=True) for field in fields]
     content = io.BytesIO()

@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from solver.load_path import PathKind
-from solver.record import VARIABLES
+from solver.record import SLEEVED, VARIABLES
 from workflow.data import bench
 from workflow.data.states import (
     COLUMN,
@@ -39,7 +39,7 @@ def table(data: Any) -> pd.DataFrame:
     held = CONTROL[kind.held.key]
     x = _column(chosen.x or kind.swept.key)
     y = _column(chosen.y or kind.follows)
-    frames = [states(data, [name for name in VARIABLES if COLUMN[name] in {x, y}])]
+    frames = [states(data, [name for name in VARIABLES | SLEEVED if COLUMN[name] in {x, y}])]
     if chosen.compare == "reference" and {x, y, held} <= OF_MAP and kind.held.key != "load":
         frames += _measured(data, kind)
     every = pd.concat(frames, ignore_index=True)

@@ -31,7 +31,7 @@ from solver.history import Start, Wave
 from solver.load_path import ZERO_FORCE, PathKind
 from solver.models import MODELS
 from solver.numerics import KINDS
-from solver.record import VARIABLES
+from solver.record import SLEEVED, VARIABLES
 from solver.rubber import LAWS, default
 from solver.rubber.rubber_law import Parameter
 from workflow.study.errors import choices, shown
@@ -48,6 +48,7 @@ ASKED = (  # those from stress on are solved for or written only when asked for
     "inner_diameter",
     "outer_diameter",
     "thread_stretch",
+    "contact_pressure",
     "volume",
     "stiffness",
     "twist",
@@ -62,7 +63,7 @@ QUANTITIES = {  # models that can give it
     **{name: tuple(MODELS) for name in ZERO_FORCE},
     SHEET: tuple(m for m in MODELS if {"volume", "stiffness"} <= set(MODELS[m].quantities)),
 }
-SHOWN = (*VARIABLES, "load")  # what a figure can show of a state
+SHOWN = (*VARIABLES, *SLEEVED, "load")  # what a figure can show of a state
 REQUIRED = (  # of a design
     "force",
     "stroke",

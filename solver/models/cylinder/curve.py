@@ -19,7 +19,7 @@ from solver.load_path import Control, Waypoint
 from solver.models.cylinder.mechanics import REACH, Cylinder, State
 from solver.models.cylinder.observe import derivatives, observed, slopes, volume
 from solver.models.cylinder.vibration import dynamic_stiffness
-from solver.record import DYNAMIC, Solution, unreached
+from solver.record import DYNAMIC, Solution, unreached, variables
 from solver.zero_force import Finder, Point, Search
 
 Array = NDArray[np.float64]
@@ -63,7 +63,7 @@ def _curve(
 ) -> tuple[dict[str, Array], str, tuple[float, float] | None]:
     """States, why the last way ended early, and where zero force was looked for."""
     path = cylinder.case.path
-    states = unreached(path.states)
+    states = unreached(path.states, variables(cylinder.case))
     for way in path.ways(rubber=cylinder.case.effects.rubber is not Rubber.NONE):
         reason, searched = _follow(cylinder, way, states, fields)
         if np.isfinite(states["force"][: len(path.stops)]).all():

@@ -32,7 +32,7 @@ JACOBIAN_STEP, CHORDS, EXACT = 1e-7, 8, 1e-12
 def solve(case: Case) -> Solution:
     """The curve of a case in time."""
     run = _Run(case)
-    states = unreached(case.path.states, variables(case.path))
+    states = unreached(case.path.states, variables(case))
     reason = run.begin()
     if not reason:
         run.record(states, 0)

@@ -86,6 +86,11 @@ class Cylinder:
         self.start = np.array([1.0, 1.0] + [0.0] * self.free)
 
     @property
+    def sleeved(self) -> bool:
+        """Whether a layer lies outside."""
+        return bool((self.glue == 0).any())
+
+    @property
     def unknowns(self) -> int:
         """Those that are solved for beside contraction and pressure."""
         return (not self.rigid) + self.free
@@ -99,6 +104,21 @@ class Cylinder:
         by_r, by_lz, torque = self._forces(r, lz, twist, threads=True)
         pressure = by_r / (2 * math.pi * r * lz)
         return State(r, lz, twist, pressure, by_lz - pressure * math.pi * r**2, torque)
+
+    def contact_pressure(self, state: State) -> float:
+        """What the sleeves press with on the tube, psi_A / (pi R^2 lz) [MPa].
+
+        Of a net it is what the tube does not bear; NaN where layers in the wall bear some of that.
+        """
+        outside = self.glue == 0
+        if self.rigid:
+            own = self._forces(state.r, state.lz, state.twist, threads=False)[0]
+            borne = own / (2 * math.pi * state.r * state.lz)
+            return max(state.pressure - borne, 0.0) if outside.all() else math.nan
+        axial, hoop = self._along_threads(state.r, state.lz, state.twist)
+        per_square = self._tension(np.hypot(axial, hoop)) * hoop**2
+        by_a = per_square / self._hoop_of_layers(state.r, state.lz) ** 2
+        return float(np.sum((by_a / (math.pi * self.layers**2 * state.lz))[outside]))
 
     def radius_at(self, radius: float, r: float, lz: float) -> float:
         """Where a reference radius is [mm]."""

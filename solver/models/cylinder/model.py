@@ -24,6 +24,7 @@ MODEL = Model(
         "inner_diameter",
         "outer_diameter",
         "thread_stretch",
+        "contact_pressure",
         "volume",
         "stiffness",
         "twist",

@@ -41,6 +41,8 @@ def observed(cylinder: Cylinder, at: Array) -> dict[str, float]:
     }
     if cylinder.case.effects.rubber is not Rubber.NONE:
         values["rubber_stretch_max"] = cylinder.rubber_stretch(state)
+    if cylinder.sleeved:
+        values["contact_pressure"] = cylinder.contact_pressure(state)
     if muscle.braid is not None:
         stretch = cylinder.thread_stretch(state)
         values |= {

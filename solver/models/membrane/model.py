@@ -46,6 +46,7 @@ MODEL = Model(
         "inner_diameter",
         "outer_diameter",
         "thread_stretch",
+        "contact_pressure",
         "volume",
         "stiffness",
         "deformed_shape",

@@ -53,6 +53,7 @@ MODEL = Model(
         "inner_diameter",
         "outer_diameter",
         "thread_stretch",
+        "contact_pressure",
         "volume",
         "stiffness",
         "stress",

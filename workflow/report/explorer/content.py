@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from solver.load_path import PathKind
 from solver.models import MODELS
-from solver.record import VARIABLES
+from solver.record import SLEEVED, VARIABLES
 from workflow.data.principal_stress import principal_of_four
 from workflow.data.records import Curve
 from workflow.data.reference import ForceMap
@@ -53,8 +53,10 @@ def content(
     left_out = OF_SOLVER if len(table.states) > MANY else set()
     quantities = {
         name: table.states[name]
-        for name in [*CONTROLS, *VARIABLES]
-        if name not in left_out and np.isfinite(table.states[name].astype(float)).any()
+        for name in [*CONTROLS, *VARIABLES, *SLEEVED]
+        if name not in left_out
+        and name in table.states
+        and np.isfinite(table.states[name].astype(float)).any()
     }
     errors = {name: table.states[f"{name}_error"] for name in WITH_ERROR if name in quantities}
     return {
