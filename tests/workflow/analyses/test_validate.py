@@ -10,14 +10,16 @@ from workflow.data import reference
 from workflow.study.study import load_library
 
 MUSCLE, MAPS = "dmsp_20_300", ("festo_musclesim", "martens2017")
+WIDE = "dmsp_40"
 
 
 @pytest.fixture(scope="module")
 def tables():
-    """Of one muscle and two pressures, by the cylinder."""
+    """Of one muscle and a wider one, at two pressures, by the cylinder."""
     patch = pytest.MonkeyPatch()
     made = load_library()
-    one = type(made)(**{**vars(made), "muscles": {MUSCLE: made.muscles[MUSCLE]}})
+    both = {name: made.muscles[name] for name in (MUSCLE, WIDE)}
+    one = type(made)(**{**vars(made), "muscles": both})
     patch.setattr(validate, "load_library", lambda: one)
     patch.setattr(validate, "MODEL", "cylinder")
     patch.setattr(validate, "PRESSURES", (0.3, 0.4))
@@ -34,7 +36,9 @@ def test_every_prediction_is_there_once(tables):
     rows = tables["validate"]
     keys = ["muscle", "reference", "fitted to", "pressure [MPa]"]
     assert not rows.duplicated(keys).any()
-    assert len(rows) == 2 * 3 * 2  # maps, bases, pressures
+    assert len(rows[rows["muscle"] == MUSCLE]) == 2 * 3 * 2  # maps, bases, pressures
+    # nothing, its own, and two as they are and by construction
+    assert len(rows[rows["muscle"] == WIDE]) == 1 * 6 * 2
 
 
 def test_errors_are_those_of_the_map(tables):
@@ -72,10 +76,25 @@ def test_every_row_says_what_it_never_saw(tables):
     assert "any force of dmsp_40" in other
 
 
+def test_stiffness_by_construction(tables):
+    """Threads as close as those of the 20 mm muscle: as thick as the circumference allows."""
+    rows = tables["validate"].set_index(["muscle", "fitted to", "pressure [MPa]"])
+    basis = f"festo_musclesim of {MUSCLE}"
+    plain = rows.loc[(WIDE, basis, 0.4), "EA [N]"]
+    built = rows.loc[(WIDE, f"{basis}, EA by construction", 0.4), "EA [N]"]
+    assert built / plain == pytest.approx((41.2 / 21.2) ** 2, rel=1e-5)
+    fits = tables["validate_fits"].set_index("muscle")
+    column = "largest |error|, EA by construction [%]"
+    assert np.isfinite(fits.loc[WIDE, column])
+    assert fits.loc[MUSCLE, column].isna().all()
+    assert rows.loc[(WIDE, f"{basis}, EA by construction", 0.4), "never saw"].endswith(WIDE)
+
+
 def test_spread_stands_beside(tables):
     """It is the distance of two maps, and none where there is one."""
     rows = tables["validate"]
-    assert rows["largest spread [%]"].between(5, 25).all()
+    assert rows.loc[rows["muscle"] == MUSCLE, "largest spread [%]"].between(5, 25).all()
+    assert rows.loc[rows["muscle"] == WIDE, "largest spread [%]"].isna().all()
     alone = validate._spread(reference.load(), ["sarosi2012"], "sarosi2012", 0.3)
     assert alone.size == 0
 
