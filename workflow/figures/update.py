@@ -26,8 +26,9 @@ def wanted(plan: Plan) -> str:
 
 def files(plan: Plan, folder: Path) -> list[Path]:
     """All of them, in the folder of a study."""
-    fields = [folder / "fields" / name for name in paraview.files(plan)]
-    return [*fields, *(path for scene in scenes(plan) for path in _files(scene, folder))]
+    series = [folder / "fields" / name for name in paraview.files(plan)]
+    parts = [part for path in series for part in paraview.parts_of(path)]
+    return [*series, *parts, *(path for scene in scenes(plan) for path in _files(scene, folder))]
 
 
 def why_drawn(plan: Plan, scene: str, folder: Path) -> str:
@@ -51,10 +52,10 @@ def figures(plan: Plan, scene: str, folder: Path) -> None:
 
 def fields(plan: Plan, folder: Path) -> None:
     """Write the fields for ParaView that a study asks for, where there is a reason to."""
-    for name, (key, state) in paraview.files(plan).items():
-        path, of = folder / "fields" / name, _made_of(state, [key])
-        if _why([path], _field_sources(), of):
-            paraview.write(CASES / f"{key}.h5", state, path)
+    for name, key in paraview.files(plan).items():
+        path, of = folder / "fields" / name, _made_of(name, [key])
+        if _why([path, *paraview.parts_of(path)], _field_sources(), of):
+            paraview.write_series(CASES / f"{key}.h5", path)
             made.note(path, made.keep(_field_sources()), of)
 
 

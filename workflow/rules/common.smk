@@ -20,7 +20,7 @@ from solver import sources
 from solver.case import digest
 from workflow.analyses import analysis
 from workflow.analyses.registry import ANALYSES
-from workflow.data import bench, paraview
+from workflow.data import bench
 from workflow.figures import update
 from workflow.plan.plan import read
 from workflow.run import batches
@@ -49,13 +49,11 @@ for line in PLAN.study.warnings:
 
 RESULTS = folders.of_study(STUDY)  # its dataset, tables, figures; records are those of all studies
 DRAWN = update.scenes(PLAN)
-FIELD_FILES = paraview.files(PLAN)
 
 
 wildcard_constraints:
     asked="study|(scene|analysis)-[^/]+",
     batch="[0-9]+",
-    file=r"[^/]+\.vtu",
     muscle="|".join(map(re.escape, PLAN.shown)) or "none",
     figure="|".join(map(re.escape, DRAWN)) or "none",
 
