@@ -101,7 +101,9 @@ class Curve:
         return float(brentq(lambda e: float(self.force(e)) - force, *ends, xtol=1e-14))
 
     def work(self, contraction: float) -> float:
-        """Integral of the force over the way [N mm]."""
+        """Integral of the force over the way [N mm]; NaN to where that is not known."""
+        if not np.isfinite(contraction):
+            return np.nan
         return self.length * float(self.force.integrate(0.0, contraction))
 
     def balance(self, contraction: float) -> float:

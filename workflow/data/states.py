@@ -107,7 +107,7 @@ class Table:
         curves = [curve for curve in curves if not curve.place.scene]
         named = sorted({curve.place.muscle for curve in curves})
         return cls(
-            pd.DataFrame([_of_muscle(muscles[name]) for name in named], named, list(OF_MUSCLE)),
+            pd.DataFrame([of_muscle(muscles[name]) for name in named], named, list(OF_MUSCLE)),
             pd.DataFrame([_of_curve(curve) for curve in curves], columns=list(OF_CURVE)),
             state_rows(curves),
         )
@@ -140,7 +140,8 @@ class Table:
         return self.states.join(curves, on="curve").drop(columns="curve")
 
 
-def _of_muscle(studied: StudiedMuscle) -> list[Any]:
+def of_muscle(studied: StudiedMuscle) -> list[Any]:
+    """What a muscle is, in the order of OF_MUSCLE."""
     muscle, braid, thread = studied.muscle, studied.muscle.braid, studied.thread
     return [
         muscle.inner_diameter,

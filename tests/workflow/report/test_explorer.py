@@ -4,15 +4,21 @@ import csv
 import os
 import re
 import shutil
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
 
-from workflow.data import bench, records
+from solver import record
+from solver.freefem import Limits
+from solver.record import VARIABLES, unreached, variables
+from solver.solve import solve
+from workflow.answers.sheet import sheet
+from workflow.data import bench, in_time, records
 from workflow.data.states import Table
 from workflow.report.explorer import content, page
 
-from ..synthetic import planned, write_records
+from ..synthetic import MUSCLE, converged, planned, write_records
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
@@ -47,22 +53,95 @@ def browser():
         found.close()
 
 
-@pytest.fixture
-def shown(browser, made):
-    """The page, opened from its file; no error and no request but for itself."""
+@contextmanager
+def opened(browser, path):
+    """A page, opened from its file; no error and no request but for itself."""
     context = browser.new_context(viewport={"width": 1280, "height": 900}, accept_downloads=True)
     tab = context.new_page()
     said, asked = [], []
     tab.on("console", lambda message: said.append(message.text))
     tab.on("pageerror", lambda error: said.append(str(error)))
     tab.on("request", lambda request: asked.append(request.url))
-    tab.goto(made[0].as_uri())
+    tab.goto(path.as_uri())
     tab.wait_for_selector("#plots figure canvas")
     yield tab
-    own = (made[0].as_uri(), "data:", "blob:")
+    own = (path.as_uri(), "data:", "blob:")
     assert said == []
     assert [url for url in asked if not url.startswith(own)] == []
     context.close()
+
+
+@pytest.fixture
+def shown(browser, made):
+    with opened(browser, made[0]) as tab:
+        yield tab
+
+
+MORE = (
+    MUSCLE.replace(
+        "c01: 0.083805}", "c01: 0.083805, memory: {per_decade: 0.06, from: 1e-2, to: 10}}"
+    )
+    + """\
+scenes:
+  loops:
+    path: cycle
+    muscles: [one]
+    cycle: {held: pressure, period: [4, 40], cycles: 1, samples: 12}
+    pressure: [0.3]
+    contraction: [0, 0.2]
+    models: [cylinder]
+  drop:
+    path: transient
+    muscles: [one]
+    load: [49]
+    transient: {supply: [[0, 0.1], [0, 0.3], [1, 0.3]], duration: 0.02, step: 0.002}
+    models: [cylinder]
+  curve:
+    path: isobaric
+    muscles: [one]
+    pressure: [0.3]
+    contraction: {from: 0, to: 0.25, step: 0.01}
+    models: [cylinder]
+    quantities: [free_contraction]
+  wall:
+    path: isobaric
+    muscles: [one]
+    pressure: [0.2]
+    contraction: [0, 0.1, 0.2]
+    models: [solid]
+    quantities: [stress]
+"""
+)
+CORNERS = np.array([[10, 0, 15, 0], [12, 0, 16.5, 0], [10, 5, 15, 4]], dtype=float)
+
+
+@pytest.fixture(scope="module")
+def more(tmp_path_factory):
+    """A page with curves in time, a data sheet, and a wall that moves; with its plan and curves."""
+    folder = tmp_path_factory.mktemp("more")
+    plan = planned(folder, MORE)
+    (folder / "cases").mkdir()
+    for key, each in plan.cases.items():
+        case = each.case
+        if case.model == "cylinder":
+            solution, _ = solve(case, None, folder / "log", Limits(wall_time=60, memory=2000))
+        else:
+            states = unreached(3, variables(case.path))
+            states |= {"contraction": np.array(case.path.stops), "force": np.array([5.0, 3.0, 1.0])}
+            stress = np.array([[-0.3, 0.1, 0.2, 1.0], [0, 0, 0.5, 0.8], [-0.3, 0, -0.4, -0.6]])
+            fields = {
+                k: {"corners": CORNERS + np.array([0, 0, k, 0]), "stress": (k + 1) ** 2 * stress}
+                for k in range(3)
+            }
+            solution = converged(states, fields=fields)
+        record.write(folder / f"cases/{key}.h5", case, solution)
+    curves = records.curves_of_study(plan, folder / "cases")
+    muscles = plan.study.muscles
+    table = Table.of(curves, muscles)
+    page.write(
+        folder / "explorer.html", content.content("more", curves, table, {}, folder, muscles)
+    )
+    return folder / "explorer.html", plan, curves
 
 
 def downloaded(tab, button, ending, folder):
@@ -133,6 +212,116 @@ def test_another_path_two_muscles_and_a_link_that_says_so(shown, made):
     shown.wait_for_selector("#plots figure canvas")
     assert shown.locator("#plots figcaption").all_inner_texts() == ["one", "bare"]
     assert shown.input_value("#y") == "volume"
+
+
+def test_curves_in_time_are_loops_and_are_read_by_their_time(browser, more, tmp_path):
+    path, _, curves = more
+    groups = in_time.groups(curves)
+    with opened(browser, path) as tab:
+        tab.select_option("#path", "cycle loops")
+        assert (tab.input_value("#x"), tab.input_value("#y")) == ("contraction", "force")
+        tab.focus("#plots .chart")
+        for _ in range(2):
+            tab.keyboard.press("ArrowRight")
+        head = tab.inner_text("#plots thead th")
+        time = float(head.removeprefix("time [s] = "))
+        own = groups["cycle/loops_4s"].squeeze()
+        assert time == pytest.approx(own["time"].values[2])
+        row = tab.locator("#plots tbody tr", has_text="period 4 s").first
+        value = float(row.locator("td").nth(1).inner_text())
+        assert value == pytest.approx(float(own["force"][2]), rel=1e-5)
+        box = tab.locator("#plots .u-over").bounding_box()
+        tab.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+        assert tab.inner_text("#plots thead th") != head
+        with downloaded(tab, "csv", "csv", tmp_path).open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        for period, name in (("4", "cycle/loops_4s"), ("40", "cycle/loops_40s")):
+            found = [row for row in rows if row["period [s]"] == period]
+            for column, unit in (("time", "s"), ("force", "N"), ("work", "N*mm")):
+                numbers = [float(row[f"{column} [{unit}]"] or "nan") for row in found]
+                expected = groups[name].squeeze()[column].values
+                np.testing.assert_allclose(numbers, expected, rtol=1e-6, atol=1e-9)
+        tab.select_option("#path", "transient drop")
+        assert tab.input_value("#x") == "time"
+        assert "time [s] = 0" in tab.inner_text("#plots thead th")
+
+
+def test_the_wall_moves_with_its_colours(browser, more):
+    path, _, _ = more
+    with opened(browser, path) as tab:
+        assert "contraction 0 (1 of 3)" in tab.inner_text("#wall-state")
+        picture = "document.getElementById('wall-canvas').toDataURL()"
+        before = tab.evaluate(picture)
+        tab.focus("#wall-at")
+        tab.keyboard.press("ArrowRight")
+        assert "pressure 0.2 MPa, contraction 0.1 (2 of 3)" in tab.inner_text("#wall-state")
+        moved = tab.evaluate(picture)
+        assert moved != before
+        tab.select_option("#wall-quantity", label="hoop stretch")
+        assert tab.evaluate(picture) != moved
+        low, high = map(float, tab.inner_text("#wall-scale").split()[:2])
+        radii = CORNERS[:, 2] + np.arange(3)[:, None]
+        stretches = (radii / CORNERS[:, 0]).mean(axis=1)  # of the one triangle, in every state
+        np.testing.assert_allclose([low, high], stretches[[0, 2]], rtol=5e-3)
+        assert "hoop stretch" in tab.get_attribute("#wall-canvas", "aria-label")
+        tab.click("#play")
+        tab.wait_for_function("document.getElementById('wall-at').value === '2'")
+        tab.click("#play")
+        assert tab.get_attribute("#play", "aria-pressed") == "false"
+
+
+def test_the_data_sheet_of_what_is_shown(browser, more):
+    path, plan, curves = more
+    (curve,) = (c for c in curves if c.place.group == "isobaric" and c.place.model == "cylinder")
+    muscle = plan.study.muscles["one"]
+    found = sheet(muscle, "one", "default", curve.case, curve.solution)
+    with opened(browser, path) as tab:
+        text = tab.locator("#sheet table").nth(1)
+        for name in ("blocked force", "work to free contraction", "largest outer diameter"):
+            row = text.locator("tr", has_text=name).first
+            value = float(row.locator("td").nth(1).inner_text())
+            assert value == pytest.approx(found.value(name), rel=1e-3)
+        tab.uncheck("#models input[value=cylinder]")
+        assert tab.locator("#sheet table").count() == 1
+
+
+def test_what_a_thousand_muscles_show_is_said(browser, tmp_path):
+    """More curves than can be told apart are not drawn, more muscles than are read not listed."""
+    sizes = "{inner_diameter: {from: 10, to: 29.975, step: 0.025}}"
+    many = (
+        MUSCLE
+        + f"""\
+  many: {{base: one, sweep: {sizes}}}
+scenes:
+  all:
+    path: isobaric
+    muscles: [many]
+    pressure: [0.3]
+    contraction: {{from: 0, to: 0.2, step: 0.05}}
+    models: [cylinder]
+"""
+    )
+    plan = planned(tmp_path, many)
+    curves = []  # as they are read, but from no disk
+    for each in plan.cases.values():
+        case, (place,) = each.case, each.places
+        states = {name: np.linspace(1, 2, 5) for name in VARIABLES}
+        solution = converged(states | {"contraction": np.array(case.path.stops)})
+        curves.append(records.Curve(case, solution, case.path.stops, place))
+    table = Table.of(curves, plan.study.muscles)
+    assert len(table.muscles) == 800
+    shown = content.content("many", curves, table, {}, tmp_path)
+    page.write(tmp_path / "explorer.html", shown)
+    with opened(browser, tmp_path / "explorer.html") as tab:
+        assert "200 of 800: Find narrows the list." in tab.inner_text("#muscles")
+        name = table.muscles.index[700]
+        tab.fill("#find", name)
+        tab.check(f"#muscles input[value='{name}']")
+        assert name in tab.inner_text("#plots tbody")
+        tab.fill("#find", "d15")
+        tab.click("#all")
+        assert re.search("60 curves are drawn; [0-9]+ more are chosen", tab.inner_text("#warning"))
+        assert tab.locator("#plots tbody tr").count() == 60
 
 
 def test_pictures_to_take_away(shown, tmp_path):

@@ -5,6 +5,7 @@ dataset, in its order, so that whoever has the page can find a number there agai
 """
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,24 +16,31 @@ from numpy.typing import NDArray
 
 from solver.load_path import PathKind
 from solver.models import MODELS
-from solver.record import SLEEVED, VARIABLES
+from solver.record import IN_TIME, SLEEVED, VARIABLES
+from workflow.answers.sheet import sheet
 from workflow.data.principal_stress import principal_of_four
 from workflow.data.records import Curve
 from workflow.data.reference import ForceMap
-from workflow.data.states import CONTROLS, OF_MUSCLE, OF_STATE, WITH_ERROR, Table
+from workflow.data.states import CONTROLS, OF_MUSCLE, OF_STATE, WITH_ERROR, Table, of_muscle
+from workflow.study.contents import StudiedMuscle
+from workflow.study.errors import StudyError
+from workflow.study.schema import QUANTITIES, SHEET
 
 MANY = 20_000  # states above which the solver's own numbers are left to the dataset
+MOST_SHEETS = 200  # curves that get a data sheet, 8 ms each
+MOST_TIMES = 600  # states of a curve in time
 OF_SOLVER = {  # variables that say how a state was found, not what it is
     *("residual", "iterations", "cutbacks", "min_det_f", "min_det_f_nodes", "margin"),
     *("force_cap", "force_midplane", "smoothing_rate", "unstable_modes"),
 }
+WORDS = {**OF_STATE, **VARIABLES, **SLEEVED, **IN_TIME}  # unit and long name of a quantity
 CLAIM = ("id", "claim", "figure", "paper", "ours", "unit", "verdict", "why")
 WALL = {  # what a wall is coloured by: unit, long name; in the order of ``_painted``
     "largest_principal_stress": ("MPa", "largest principal stress"),
     "smallest_principal_stress": ("MPa", "smallest principal stress"),
     "hoop_stress": ("MPa", "hoop stress"),
     "axial_stress": ("MPa", "stress along the axis"),
-    "hoop_stretch": ("1", "stretch around the tube"),
+    "hoop_stretch": ("1", "hoop stretch"),
 }
 
 
@@ -42,54 +50,45 @@ def content(
     table: Table,
     maps: Mapping[str, Mapping[str, ForceMap]],
     tables: Path,
+    muscles: Mapping[str, StudiedMuscle] | None = None,
+    figures: Mapping[str, Sequence[str]] | None = None,
 ) -> dict[str, Any]:
     """All that the page shows.
 
     ``table`` is that of ``curves``; ``maps`` are the force maps of every muscle, by name; of
     ``tables``, the folder of results/tables, those of claims and deviations are taken if they are
-    there. Curves in time are in the dataset only.
+    there. With ``muscles`` curves have data sheets, with ``figures``, the muscles of every scene,
+    claims are of those that their figure shows. Rows of curves in time stand after those of
+    ``table``.
     """
+    timed = [curve for curve in curves if curve.place.scene]
     curves = [curve for curve in curves if not curve.place.scene]
     left_out = OF_SOLVER if len(table.states) > MANY else set()
+    states, of_timed, thinned = _with_times(table, timed)
     quantities = {
-        name: table.states[name]
-        for name in [*CONTROLS, *VARIABLES, *SLEEVED]
-        if name not in left_out
-        and name in table.states
-        and np.isfinite(table.states[name].astype(float)).any()
+        name: states[name]
+        for name in [*CONTROLS, *VARIABLES, *SLEEVED, *IN_TIME]
+        if name not in left_out and name in states and np.isfinite(states[name].astype(float)).any()
     }
-    errors = {name: table.states[f"{name}_error"] for name in WITH_ERROR if name in quantities}
+    errors = {name: states[f"{name}_error"] for name in WITH_ERROR if name in quantities}
+    models = {*table.curves["model"], *(curve["model"] for curve in of_timed)}
+    named = _muscles(table, timed, muscles)
     return {
         "title": f"Pneumatic muscles: {study}",
         "quantities": {
-            name: {"unit": OF_STATE[name][0], "label": OF_STATE[name][1]} for name in quantities
+            name: {"unit": WORDS[name][0], "label": WORDS[name][1]} for name in quantities
         },
         "leftOut": sorted(left_out),
-        "paths": {
-            kind.value: {
-                "held": kind.held.key,
-                "swept": kind.swept.key,
-                "follows": kind.follows,
-            }
-            for kind in PathKind
-            if kind.value in set(table.curves["path"])
-        },
-        "models": {
-            name: MODELS[name].label for name in MODELS if name in set(table.curves["model"])
-        },
-        "muscles": [
-            {"name": name, **{column: _plain(row[column]) for column in OF_MUSCLE}}
-            for name, row in table.muscles.iterrows()
-        ],
+        "thinned": thinned,
+        "paths": _paths(table, timed),
+        "models": {name: MODELS[name].label for name in MODELS if name in models},
+        "muscles": named,
         "muscleLabels": {name: list(words) for name, words in OF_MUSCLE.items()},
-        "curves": _curves(table),
+        "curves": [*_curves(table), *of_timed],
         "states": {
             "columns": {name: numbers(values) for name, values in quantities.items()},
             "errors": {name: numbers(values) for name, values in errors.items()},
-            "point": table.states["point"].tolist(),
-            "status": table.states["status"].tolist(),
-            "flags": table.states["flags"].tolist(),
-            "note": table.states["note"].tolist(),
+            **{name: states[name].tolist() for name in ("point", "status", "flags", "note")},
         },
         "measured": [
             {
@@ -99,13 +98,114 @@ def content(
                 "suspect": [numbers(row) for row in found.suspect],
             }
             for muscle, its in maps.items()
-            if muscle in table.muscles.index
+            if muscle in {each["name"] for each in named}
             for found in its.values()
         ],
         "walls": {"quantities": WALL, "states": _walls(curves, table)},
-        "claims": _rows(tables / "claims.csv", CLAIM),
+        "sheets": _sheets(curves, muscles or {}),
+        "claims": [
+            claim | _about(str(claim.get("figure", "")), figures or {})
+            for claim in _rows(tables / "claims.csv", CLAIM)
+        ],
         "deviations": _deviations(tables / "deviation.csv"),
     }
+
+
+def _paths(table: Table, timed: Sequence[Curve]) -> dict[str, dict[str, Any]]:
+    """What is held, what stands across and what up, of every path; one for each scene in time."""
+    found: dict[str, dict[str, Any]] = {
+        kind.value: {"held": kind.held.key, "swept": kind.swept.key, "follows": kind.follows}
+        for kind in PathKind
+        if kind.value in set(table.curves["path"])
+    }
+    for curve in timed:
+        kind, cycles = PathKind(curve.place.kind), curve.place.group == "cycle"
+        found[_path_of(curve)] = {
+            "held": kind.held.key,
+            "swept": kind.swept.key if cycles else "time",
+            "follows": kind.follows,
+            "inTime": True,
+        }
+    return found
+
+
+def _path_of(curve: Curve) -> str:
+    """What the path of a curve in time is called."""
+    return f"{curve.place.group} {curve.place.scene}"
+
+
+def _with_times(
+    table: Table, timed: Sequence[Curve]
+) -> tuple[pd.DataFrame, list[dict[str, Any]], int]:
+    """The states, those of curves in time after the others; these curves; how many were thinned."""
+    states = table.states.reset_index(drop=True)
+    frames, found, thinned = [states], [], 0
+    first = len(states)
+    for curve in timed:
+        solution, place = curve.solution, curve.place
+        every = len(solution.state_status)
+        step = -(-every // MOST_TIMES)
+        thinned += step > 1
+        kept = np.arange(0, every, step)
+        rows: dict[str, Any] = {
+            name: np.asarray(values, float)[kept] for name, values in solution.states.items()
+        }
+        held, swept = curve.case.path.kind.held.key, curve.case.path.kind.swept.key
+        loads = "load" in (held, swept)
+        rows["load"] = rows["force"] if loads else np.full(len(kept), np.nan)
+        rows["point"] = "stop"
+        rows["status"] = [solution.state_status[k].value for k in kept]
+        rows["flags"] = [" ".join(sorted(solution.flags[k])) for k in kept]
+        rows["note"] = [solution.notes[k] for k in kept]
+        frames.append(pd.DataFrame(rows))
+        of_curve = {
+            "muscle": place.muscle,
+            "model": place.model,
+            "variant": place.variant,
+            "path": _path_of(curve),
+            "held": _plain(place.held),
+            "case": curve.key,
+            "case_status": solution.status.value,
+            "case_reason": solution.reason,
+        }
+        period = {"period": _plain(place.period)} if place.period else {}
+        found.append(of_curve | period | {"first": first, "count": len(kept)})
+        first += len(kept)
+    return pd.concat(frames, ignore_index=True), found, thinned
+
+
+def _muscles(
+    table: Table, timed: Sequence[Curve], studied: Mapping[str, StudiedMuscle] | None
+) -> list[dict[str, Any]]:
+    """All muscles that have curves, with what they are."""
+    rows = dict(table.muscles.iterrows())
+    for name in sorted({curve.place.muscle for curve in timed} - rows.keys()):
+        known = of_muscle(studied[name]) if studied else [math.nan] * len(OF_MUSCLE)
+        rows[name] = pd.Series(known, list(OF_MUSCLE))
+    return [
+        {"name": name, **{column: _plain(row[column]) for column in OF_MUSCLE}}
+        for name, row in rows.items()
+    ]
+
+
+def _sheets(curves: Sequence[Curve], muscles: Mapping[str, StudiedMuscle]) -> dict[str, Any]:
+    """The data sheet of every isobaric curve that has states enough, its columns by curve."""
+    columns: dict[int, dict[str, Any]] = {}
+    notes: dict[int, dict[str, str]] = {}
+    for number, curve in enumerate(curves):
+        place = curve.place
+        if place.group != PathKind.ISOBARIC or place.model not in QUANTITIES[SHEET]:
+            continue
+        if place.muscle not in muscles or len(columns) >= MOST_SHEETS:
+            continue
+        studied = muscles[place.muscle]
+        try:
+            found = sheet(studied, place.muscle, place.variant, curve.case, curve.solution)
+        except StudyError:
+            continue  # too few states
+        columns[number] = {f"{row.name} [{row.unit}]": _plain(row.value) for row in found.rows}
+        notes[number] = {f"{row.name} [{row.unit}]": row.note for row in found.rows if row.note}
+    return {"columns": columns, "notes": notes, "most": MOST_SHEETS}
 
 
 def numbers(values: Iterable[Any]) -> list[float | None]:
@@ -168,6 +268,13 @@ def _rows(file: Path, columns: Sequence[str]) -> list[dict[str, Any]]:
         {name: _plain(row[name]) for name in columns if name in row}
         for row in rows.to_dict("records")
     ]
+
+
+def _about(figure: str, scenes: Mapping[str, Sequence[str]]) -> dict[str, list[str]]:
+    """The muscles that the figures of a claim show, as ``4, 5`` or ``12``; nothing if not known."""
+    numbers = [f"fig{int(number):02d}" for number in re.findall(r"\d+", figure)]
+    found = [muscle for name in numbers for muscle in scenes.get(name, ())]
+    return {"muscles": sorted(set(found))} if found else {}
 
 
 def _deviations(file: Path) -> list[dict[str, Any]]:

@@ -7,8 +7,10 @@ const DASHES = [[], [9, 4], [2, 3], [9, 3, 2, 3], [14, 4], [5, 2]];
 const MOST_CURVES = 60; // that are drawn at a time
 const MOST_MUSCLES = 200; // that are listed at a time
 const SHOWN = new Set(["converged", "unstable"]); // statuses of states that a line goes through
+const MARKS = ["dot", "square", "diamond"]; // of measured points, by their source
 const OF_MAP = { pressure: 0, contraction: 1, force: 2, load: 2 }; // columns of measured points
 const VIRIDIS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+const MOST_SHEETS = 8; // data sheets beside each other
 const STEP_TIME = 500; // ms from one state of the wall to the next
 
 const $ = (id) => document.getElementById(id);
@@ -85,10 +87,10 @@ function curvesOf(muscles) {
     .map((curve, number) => ({ ...curve, number }))
     .filter((c) => c.path === choice.path && muscles.includes(c.muscle) && choice.models.includes(c.model)
       && choice.variants.includes(c.variant) && choice.held.includes(c.held));
-  const names = unique(kept.map((c) => `${c.muscle} ${c.held}`));
+  const names = unique(kept.map(nameOf));
   return kept.map((c) => ({
     ...c,
-    colour: COLOURS[names.indexOf(`${c.muscle} ${c.held}`) % COLOURS.length],
+    colour: COLOURS[names.indexOf(nameOf(c)) % COLOURS.length],
     dash: DASHES[Object.keys(DATA.models).indexOf(c.model) % DASHES.length],
     width: c.variant === "default" ? 2 : 1.2,
     label: labelOf(c),
@@ -96,10 +98,14 @@ function curvesOf(muscles) {
   }));
 }
 
+/** What curves of one colour have in common. */
+const nameOf = (curve) => `${curve.muscle} ${curve.held} ${curve.period || ""}`;
+
 function labelOf(curve) {
   const held = DATA.paths[curve.path].held;
   const parts = [curve.muscle, DATA.models[curve.model], `${digits(curve.held)} ${unitOf(held)}`.trim()];
   if (curve.variant !== "default") parts.splice(2, 0, curve.variant);
+  if (curve.period) parts.push(`period ${digits(curve.period)} s`);
   return parts.join(", ");
 }
 
@@ -114,7 +120,7 @@ function pointsOf(curve) {
   const found = [];
   for (let row = curve.first; row < curve.first + curve.count; ++row) {
     found.push({
-      row, x: columns[choice.x][row], y: columns[choice.y][row],
+      row, x: columns[choice.x][row], y: columns[choice.y][row], time: inTime() ? columns.time[row] : null,
       error: errors[choice.y] ? errors[choice.y][row] : null,
       zero: point[row] !== "stop", status: status[row], flags: flags[row], note: note[row],
     });
@@ -122,20 +128,29 @@ function pointsOf(curve) {
   return found;
 }
 
+/** Whether states are told apart by their time: along a loop there are several at an abscissa. */
+const inTime = () => Boolean(DATA.paths[choice.path].inTime);
+
+const overstrained = (p) => p.flags.split(" ").includes("overstrained");
 const drawn = (p) => p.x !== null && p.y !== null;
 const onLine = (p) => drawn(p) && !p.zero && SHOWN.has(p.status);
 
-/** Measured points of some muscles at the held values that are chosen. */
-function measuredOf(muscles) {
+/** Measured points of some muscles at the held values that are chosen, in the colours of their curves. */
+function measuredOf(muscles, curves) {
   const held = OF_MAP[DATA.paths[choice.path].held];
   const [x, y] = [OF_MAP[choice.x], OF_MAP[choice.y]];
   if (!choice.measured || x === undefined || y === undefined) return [];
-  return DATA.measured.filter((m) => muscles.includes(m.muscle)).flatMap((m, number) =>
+  return DATA.measured.filter((m) => muscles.includes(m.muscle)).flatMap((m) =>
     choice.held.map((value) => {
       const at = (rows) => rows.filter((row) => Math.abs(row[held] - value) <= 1e-6 * Math.max(1, Math.abs(value)))
         .map((row) => ({ x: row[x], y: row[y] }));
-      return { label: `${m.label}, ${digits(value)} ${unitOf(DATA.paths[choice.path].held)}`, number, points: at(m.points), suspect: at(m.suspect) };
-    }).filter((m) => m.points.length || m.suspect.length));
+      const own = curves.find((c) => c.muscle === m.muscle && c.held === value);
+      return {
+        label: `${m.label}, ${digits(value)} ${unitOf(DATA.paths[choice.path].held)}`, source: m.label,
+        colour: own ? own.colour : colour("--ink"), points: at(m.points), suspect: at(m.suspect),
+      };
+    }).filter((m) => m.points.length || m.suspect.length))
+    .map((m, _, all) => ({ ...m, mark: MARKS[unique(all.map((each) => each.source)).indexOf(m.source) % MARKS.length] }));
 }
 
 // --- drawing: the same marks by a canvas and as SVG ------------------------------------------------
@@ -154,12 +169,12 @@ function draw(panel, toX, toY, pen) {
     for (const p of c.points.filter(drawn)) {
       if (!SHOWN.has(p.status)) pen.mark("cross", ...place(p), c.colour);
       else if (p.zero) pen.mark("ring", ...place(p), c.colour);
-      else if (p.flags.split(" ").includes("overstrained")) pen.mark("triangle", ...place(p), c.colour);
+      else if (overstrained(p)) pen.mark("triangle", ...place(p), c.colour);
     }
   }
   for (const m of panel.measured) {
-    for (const p of m.points) pen.mark(m.number % 2 ? "square" : "dot", ...place(p), panel.ink);
-    for (const p of m.suspect) pen.mark("cross", ...place(p), panel.ink);
+    for (const p of m.points) pen.mark(m.mark, ...place(p), m.colour);
+    for (const p of m.suspect) pen.mark("plus", ...place(p), m.colour);
   }
 }
 
@@ -176,6 +191,8 @@ function parts(points) {
 const SHAPES = { // of marks, within -1 .. 1
   cross: [[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]],
   triangle: [[[0, -1.2], [1.1, 0.8], [-1.1, 0.8], [0, -1.2]]],
+  plus: [[[-1, 0], [1, 0]], [[0, -1], [0, 1]]],
+  diamond: [[[0, -1.1], [1.1, 0], [0, 1.1], [-1.1, 0], [0, -1.1]]],
   square: [[[-0.8, -0.8], [0.8, -0.8], [0.8, 0.8], [-0.8, 0.8], [-0.8, -0.8]]],
 };
 
@@ -236,7 +253,7 @@ function showCharts() {
   const made = sides.map((muscles) => {
     const curves = curvesOf(muscles);
     left += Math.max(0, curves.length - MOST_CURVES);
-    return { muscles, curves: curves.slice(0, MOST_CURVES), measured: measuredOf(muscles), ink: colour("--ink") };
+    return { muscles, curves: curves.slice(0, MOST_CURVES), measured: measuredOf(muscles, curves) };
   });
   panels.forEach((p) => p.chart && p.chart.destroy());
   panels = made;
@@ -265,7 +282,28 @@ function figureOf(panel, range) {
   panel.box.setAttribute("aria-label", `${range ? named(choice.y) : ""} against ${range ? named(choice.x) : ""} of ${panel.muscles.join(", ")}; arrow keys read states`);
   panel.table = element("div", { className: "scroll" });
   panel.table.setAttribute("aria-live", "polite");
-  return element("figure", {}, element("figcaption", { textContent: panel.muscles.join(", ") }), panel.box, panel.table);
+  return element("figure", {}, element("figcaption", { textContent: panel.muscles.join(", ") }), panel.box, marksOf(panel), panel.table);
+}
+
+/** What the marks of a panel mean: those that are in it. */
+function marksOf(panel) {
+  const points = panel.curves.flatMap((c) => c.points.filter(drawn));
+  const found = [
+    ...unique(panel.measured.filter((m) => m.points.length).map((m) => m.source))
+      .map((source) => [panel.measured.find((m) => m.source === source).mark, `measured: ${source}`]),
+    ["plus", "measured, not used", panel.measured.some((m) => m.suspect.length)],
+    ["cross", "not valid", points.some((p) => !SHOWN.has(p.status))],
+    ["ring", "zero force", points.some((p) => p.zero && SHOWN.has(p.status))],
+    ["triangle", "beyond a limit of the material", points.some((p) => SHOWN.has(p.status) && !p.zero && overstrained(p))],
+  ].filter(([, , there = true]) => there);
+  const band = choice.bands && points.some((p) => p.error > 0) ? [element("span", { textContent: "band: error of the mesh" })] : [];
+  return element("p", { className: "marks" }, ...found.map(([mark, said]) => {
+    const parts = [];
+    svgPen(parts).mark(mark, 7, 7, colour("--ink"));
+    const one = element("span", { innerHTML: `<svg width="14" height="14" aria-hidden="true">${parts.join("")}</svg> ` });
+    one.append(said);
+    return one;
+  }), ...band);
 }
 
 function chartOf(panel, range) {
@@ -288,14 +326,28 @@ function chartOf(panel, range) {
         draw(panel, (x) => u.valToPos(x, "x", true), (y) => u.valToPos(y, "y", true), canvasPen(u.ctx, devicePixelRatio));
         u.ctx.restore();
       }],
-      setCursor: [(u) => { if (u.cursor.left >= 0 && !panel.byKey) read(panel, u.posToVal(u.cursor.left, "x")); }],
+      setCursor: [(u) => { if (u.cursor.left >= 0 && !panel.byKey) read(panel, pointed(panel, u)); }],
     },
   }, [range[0], range[1]], panel.box);
-  panel.xs = unique([...panel.curves.flatMap((c) => c.points.filter(drawn).map((p) => p.x)), ...panel.measured.flatMap((m) => m.points.map((p) => p.x))]).sort((a, b) => a - b);
+  const places = inTime() ? panel.curves.flatMap((c) => c.points.filter(drawn).map((p) => p.time))
+    : [...panel.curves.flatMap((c) => c.points.filter(drawn).map((p) => p.x)), ...panel.measured.flatMap((m) => m.points.map((p) => p.x))];
+  panel.xs = unique(places).sort((a, b) => a - b);
   panel.range = range;
   panel.box.onkeydown = (event) => stepByKey(panel, chart, event);
-  read(panel, panel.curves.flatMap((c) => c.points.filter(drawn)).reduce((least, p) => Math.min(least, p.x), Infinity));
+  const own = panel.curves.flatMap((c) => c.points.filter(drawn).map((p) => (inTime() ? p.time : p.x)));
+  read(panel, own.length ? own.reduce((a, b) => Math.min(a, b)) : panel.xs[0]);
   return chart;
+}
+
+/** What the mouse points at: an abscissa; where curves are in time, the time of the nearest state. */
+function pointed(panel, chart) {
+  if (!inTime()) return chart.posToVal(chart.cursor.left, "x");
+  let [least, found] = [Infinity, panel.xs[0]];
+  for (const p of panel.curves.flatMap((c) => c.points.filter(drawn))) {
+    const far = Math.hypot(chart.valToPos(p.x, "x") - chart.cursor.left, chart.valToPos(p.y, "y") - chart.cursor.top);
+    if (far < least) [least, found] = [far, p.time];
+  }
+  return found;
 }
 
 function stepByKey(panel, chart, event) {
@@ -304,12 +356,19 @@ function stepByKey(panel, chart, event) {
   event.preventDefault();
   const at = Math.min(panel.xs.length - 1, Math.max(0, panel.xs.indexOf(panel.at) + step));
   panel.byKey = true;
-  chart.setCursor({ left: chart.valToPos(panel.xs[at], "x"), top: chart.bbox.height / devicePixelRatio / 2 });
+  chart.setCursor({ left: chart.valToPos(abscissa(panel, panel.xs[at]), "x"), top: chart.bbox.height / devicePixelRatio / 2 });
   panel.byKey = false;
   read(panel, panel.xs[at]);
 }
 
-/** Numbers of every curve at the abscissa of a state that is nearest to x, in the table below. */
+/** Where on the axis a panel is read: there, or where its first curve is at that time. */
+function abscissa(panel, at) {
+  if (!inTime()) return at;
+  const found = panel.curves.map((c) => valueAt(c, at)).find(Boolean);
+  return found ? found.x : at;
+}
+
+/** Numbers of every curve at the state that is nearest to x (or to a time), in the table below. */
 function read(panel, x) {
   panel.at = panel.xs.reduce((best, value) => (Math.abs(value - x) < Math.abs(best - x) ? value : best), panel.xs[0]);
   const rows = panel.curves.map((c) => {
@@ -318,16 +377,17 @@ function read(panel, x) {
     const said = found ? [found.status !== "converged" ? found.status : "", found.flags, found.note].filter(Boolean).join("; ") : c.case_reason;
     return row([key(c), c.label], found ? (found.between ? "≈ " : "") + digits(found.y) : "", error, said);
   });
-  for (const m of panel.measured) {
+  for (const m of inTime() ? [] : panel.measured) {
     for (const p of m.points.filter((p) => Math.abs(p.x - panel.at) < 1e-9)) rows.push(row(["", `measured: ${m.label}`], digits(p.y), "", ""));
   }
-  const head = row([named(choice.x) + " = " + digits(panel.at)], named(choice.y), "error", "", "th");
+  const head = row([`${named(inTime() ? "time" : choice.x)} = ${digits(panel.at)}`], named(choice.y), "error", "", "th");
   panel.table.replaceChildren(element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows)));
 }
 
 function row(label, value, error, said, cell = "td") {
-  return element("tr", {}, element(cell, { className: "name" }, ...label), element(cell, { className: "number", textContent: value }),
-    element(cell, { className: "number", textContent: error }), element(cell, { className: "said", textContent: said }));
+  const name = element(cell, { className: "name" }, ...label);
+  if (said) name.append(element("span", { className: "said", textContent: said }));
+  return element("tr", {}, name, element(cell, { className: "number", textContent: value }), element(cell, { className: "number", textContent: error }));
 }
 
 function key(curve) {
@@ -340,14 +400,15 @@ function key(curve) {
 
 /** The state of a curve at x, or a value between two of its states, or nothing. */
 function valueAt(curve, x) {
-  const exact = curve.points.find((p) => drawn(p) && Math.abs(p.x - x) <= 1e-9 * Math.max(1, Math.abs(x)));
+  const along = inTime() ? "time" : "x";
+  const exact = curve.points.find((p) => drawn(p) && Math.abs(p[along] - x) <= 1e-9 * Math.max(1, Math.abs(x)));
   if (exact) return exact;
   const line = curve.points.filter((p) => !p.zero);
   for (let k = 1; k < line.length; ++k) {
     const [a, b] = [line[k - 1], line[k]];
-    if (onLine(a) && onLine(b) && (a.x - x) * (b.x - x) < 0) {
-      const share = (x - a.x) / (b.x - a.x);
-      return { y: a.y + share * (b.y - a.y), error: Math.max(a.error, b.error), between: true, status: "converged", flags: "", note: "" };
+    if (onLine(a) && onLine(b) && (a[along] - x) * (b[along] - x) < 0) {
+      const share = (x - a[along]) / (b[along] - a[along]);
+      return { x: a.x + share * (b.x - a.x), y: a.y + share * (b.y - a.y), error: Math.max(a.error, b.error), between: true, status: "converged", flags: "", note: "" };
     }
   }
   return null;
@@ -358,11 +419,11 @@ function valueAt(curve, x) {
 function csv() {
   const quoted = (value) => (/[",\n]/.test(String(value)) ? `"${String(value).replaceAll('"', '""')}"` : String(value ?? ""));
   const { columns, errors, point, status, flags, note } = DATA.states;
-  const head = ["muscle", "model", "variant", "path", "case", "point",
+  const head = ["muscle", "model", "variant", "path", "period [s]", "case", "point",
     ...Object.keys(columns).map((name) => `${name} [${DATA.quantities[name].unit}]`),
     ...Object.keys(errors).map((name) => `${name}_error [${DATA.quantities[name].unit}]`), "status", "flags", "note"];
   const rows = panels.flatMap((panel) => panel.curves).flatMap((c) => c.points.map(({ row }) =>
-    [c.muscle, c.model, c.variant, c.path, c.case, point[row], ...Object.values(columns).map((v) => v[row]),
+    [c.muscle, c.model, c.variant, c.path, c.period, c.case, point[row], ...Object.values(columns).map((v) => v[row]),
       ...Object.values(errors).map((v) => v[row]), status[row], flags[row], note[row]]));
   return [head, ...rows].map((cells) => cells.map(quoted).join(",")).join("\r\n") + "\r\n";
 }
@@ -407,7 +468,7 @@ function svg() {
     });
     panel.measured.forEach((m, k) => {
       const y = y0 + height + 54 + 16 * (panel.curves.length + k);
-      svgPen(out).mark(m.number % 2 ? "square" : "dot", x0 + 17, y, panel.ink);
+      svgPen(out).mark(m.mark, x0 + 17, y, m.colour);
       out.push(`<text x="${x0 + 42}" y="${y + 4}">${escaped(`measured: ${m.label}`)}</text>`);
     });
   });
@@ -439,7 +500,7 @@ function wallGroups() {
   const found = new Map();
   for (const state of DATA.walls.states) {
     const c = DATA.curves[state.curve];
-    if (![...choice.muscles, ...(choice.compare ? [choice.beside] : [])].includes(c.muscle)) continue;
+    if (!shownMuscles().includes(c.muscle)) continue;
     const name = [c.muscle, DATA.models[c.model], c.variant, c.path].join(", ");
     if (!found.has(name)) found.set(name, { name, states: [] });
     found.get(name).states.push(state);
@@ -533,23 +594,48 @@ function play() {
 
 // --- muscles and verdicts ---------------------------------------------------------------------------
 
-function table(head, rows) {
+function table(head, rows, name = "") {
   const cells = (values, name) => values.map((value) => element(name, { textContent: typeof value === "number" ? digits(value) : value ?? "", className: typeof value === "number" ? "number" : "" }));
-  return element("div", { className: "scroll" }, element("table", {}, element("thead", {}, element("tr", {}, ...cells(head, "th"))),
+  return element("div", { className: "scroll" }, element("table", { className: name }, element("thead", {}, element("tr", {}, ...cells(head, "th"))),
     element("tbody", {}, ...rows.map((values) => element("tr", {}, ...cells(values, "td"))))));
 }
 
+const shownMuscles = () => unique([...choice.muscles, ...(choice.compare ? [choice.beside] : [])]);
+
 function showMuscles() {
-  const names = unique([...choice.muscles, ...(choice.compare ? [choice.beside] : [])]).slice(0, MOST_CURVES);
+  const names = shownMuscles().slice(0, MOST_CURVES);
   const chosen = DATA.muscles.filter((m) => names.includes(m.name));
   const rows = Object.entries(DATA.muscleLabels).map(([name, [unit, label]]) =>
     [unit && unit !== "1" ? `${label} [${unit}]` : label, ...chosen.map((m) => m[name])]);
-  $("sheet").replaceChildren(table(["", ...chosen.map((m) => m.name)], rows));
+  $("sheet").replaceChildren(table(["", ...chosen.map((m) => m.name)], rows), ...designSheets());
 }
+
+/** The data sheets of the curves that are shown, one column each. */
+function designSheets() {
+  const { columns, notes, most } = DATA.sheets;
+  const shown = panels.flatMap((p) => p.curves).filter((c) => columns[c.number]);
+  const few = shown.slice(0, MOST_SHEETS);
+  if (!few.length) return [];
+  const names = unique(few.flatMap((c) => Object.keys(columns[c.number]))).filter((name) => few.some((c) => columns[c.number][name] !== null && columns[c.number][name] !== undefined));
+  const how = (name) => {
+    const said = unique(few.map((c) => notes[c.number][name] ?? ""));
+    return said.length === 1 ? said[0] : "";
+  };
+  const rows = names.map((name) => [name.replace(" [1]", ""), ...few.map((c) => rounded(columns[c.number][name])), how(name)]);
+  const said = [shown.length > few.length ? `${few.length} of ${shown.length} are shown.` : "", Object.keys(columns).length >= most ? `The first ${most} curves have one.` : ""].filter(Boolean).join(" ");
+  return [element("h3", { textContent: "Data sheets of what is shown" }),
+    element("p", { className: "hint", textContent: `From these curves at constant pressure; air in normal litres. ${said}` }),
+    table(["", ...few.map((c) => c.label), "how"], rows, "sheet")];
+}
+
+const rounded = (value) => (typeof value === "number" ? Number(value.toPrecision(4)) : value);
 
 function showVerdicts() {
   const parts = [];
-  const deviations = DATA.deviations.filter((d) => choice.muscles.includes(d.muscle));
+  const muscles = shownMuscles();
+  const deviations = DATA.deviations.filter((d) => muscles.includes(d.muscle) && choice.models.includes(d.model) && choice.variants.includes(d.variant)
+    && (choice.path === "isobaric" && choice.held.length === 1 ? Number(d.pressure) === choice.held[0] : d.pressure === "all"));
+  const claims = DATA.claims.filter((c) => !c.muscles || c.muscles.some((name) => muscles.includes(name)));
   const percent = (share) => (share === null ? "" : `${(100 * share).toFixed(1)} %`);
   if (deviations.length) {
     parts.push(element("p", { textContent: "Difference from measured maps, in % of the largest measured force at that pressure:" }),
@@ -557,8 +643,9 @@ function showVerdicts() {
         deviations.map((d) => [d.muscle, DATA.models[d.model] || d.model, d.variant, d.reference, d.pressure, percent(d.mean), percent(d.largest)])));
   }
   if (DATA.claims.length) {
-    parts.push(element("p", { textContent: "Claims of the paper:" }), table(["claim", "figure", "paper", "ours", "verdict", "why"],
-      DATA.claims.map((c) => [`${c.id}: ${c.claim}`, c.figure ?? "", c.paper ?? "", c.ours === null ? "" : `${digits(c.ours, 3)} ${c.unit === "1" ? "" : c.unit}`, c.verdict, c.why ?? ""])));
+    parts.push(element("p", { textContent: claims.length ? "Claims of the paper about what is shown:" : "No claim of the paper is about what is shown." }));
+    if (claims.length) parts.push(table(["claim", "figure", "paper", "ours", "verdict", "why"],
+      claims.map((c) => [`${c.id}: ${c.claim}`, c.figure ?? "", c.paper ?? "", c.ours === null ? "" : `${digits(c.ours, 3)} ${c.unit === "1" ? "" : c.unit}`, c.verdict, c.why ?? ""])));
   } else {
     parts.push(element("p", { className: "hint", textContent: "The claims of the paper have not been judged in this folder: snakemake --cores 2 claims does it." }));
   }
@@ -579,14 +666,20 @@ function showChoices() {
   boxes("held", unique(curves.map((c) => c.held)).sort((a, b) => a - b), String);
   boxes("models", Object.keys(DATA.models).filter((m) => curves.some((c) => c.model === m)), (m) => DATA.models[m]);
   boxes("variants", unique(curves.map((c) => c.variant)), String);
-  const wanted = $("find").value.toLowerCase();
   const muscles = unique(curves.map((c) => c.muscle));
-  const found = muscles.filter((m) => m.toLowerCase().includes(wanted) || choice.muscles.includes(m));
+  const sought = listed();
+  const found = sought.length === muscles.length ? muscles : unique([...muscles.filter((m) => choice.muscles.includes(m)), ...sought]);
   boxes("muscles", found.slice(0, MOST_MUSCLES), String);
   if (found.length > MOST_MUSCLES) $("muscles").append(element("span", { textContent: `${MOST_MUSCLES} of ${found.length}: Find narrows the list.` }));
   fill("beside", muscles.map((m) => [m, m]), choice.beside);
   $("beside-box").hidden = !choice.compare;
   for (const name of ["bands", "measured", "compare"]) $(name).checked = choice[name];
+}
+
+/** Muscles of the path whose names have what is sought. */
+function listed() {
+  const wanted = $("find").value.toLowerCase();
+  return unique(DATA.curves.filter((c) => c.path === choice.path).map((c) => c.muscle)).filter((m) => m.toLowerCase().includes(wanted));
 }
 
 function boxes(key, values, label) {
@@ -618,6 +711,8 @@ function listen() {
   for (const key of ["x", "y", "beside"]) $(key).onchange = () => { choice[key] = $(key).value; show(); };
   for (const key of ["bands", "measured", "compare"]) $(key).onchange = () => { choice[key] = $(key).checked; show(); };
   $("find").oninput = showChoices;
+  $("all").onclick = () => { choice.muscles = unique([...choice.muscles, ...listed()]); show(); };
+  $("none").onclick = () => { choice.muscles = choice.muscles.slice(0, 1); show(); };
   $("csv").onclick = () => save(new Blob([csv()], { type: "text/csv" }), "csv");
   $("svg").onclick = () => save(new Blob([svg()], { type: "image/svg+xml" }), "svg");
   $("png").onclick = async () => save(await png(), "png");
@@ -644,7 +739,8 @@ async function start() {
   const count = DATA.states.status.length;
   const counted = (number, name) => `${number} ${name}${number === 1 ? "" : "s"}`;
   $("summary").textContent = `${counted(DATA.muscles.length, "muscle")}, ${counted(DATA.curves.length, "curve")}, ${counted(count, "state")}.`
-    + (DATA.leftOut.length ? ` With so many states the solver's own numbers (${DATA.leftOut.join(", ")}) stand in the dataset only.` : "");
+    + (DATA.leftOut.length ? ` With so many states the solver's own numbers (${DATA.leftOut.join(", ")}) stand in the dataset only.` : "")
+    + (DATA.thinned ? ` ${counted(DATA.thinned, "curve")} in time ${DATA.thinned === 1 ? "is" : "are"} thinned; the dataset has every step.` : "");
   if (!DATA.curves.length) { $("warning").textContent = "Nothing has been computed yet."; return; }
   choice = fromAddress();
   listen();

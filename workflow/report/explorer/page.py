@@ -34,8 +34,11 @@ def make(plan: Plan, title: str, curves: Sequence[Curve], table: Table, results:
     ``table`` is that of ``curves``. Of tables beside the dataset, those of claims and deviations
     are shown if they are there.
     """
-    maps = bench.of_muscles(plan.study.muscles)
-    write(results / FILE, content(title, curves, table, maps, results / "tables"))
+    muscles = plan.study.muscles
+    maps = bench.of_muscles(muscles)
+    figures = {name: scene.muscles for name, scene in plan.study.scenes.items()}
+    shown = content(title, curves, table, maps, results / "tables", muscles, figures)
+    write(results / FILE, shown)
 
 
 def write(output: Path, shown: dict[str, Any]) -> None:
