@@ -196,7 +196,7 @@ def _write(case: Case, solution: Solution, state: int, output: Path, view: View)
         values = {name: each.astype(np.float32) for name, each in values.items()}
     mesh = meshio.Mesh(points, parts.cells, point_data=values, cell_data=parts.of_cells)
     numbers = {"TimeValue": _times(case, solution)[state]}
-    for name, (unit, _) in record.variables(case.path).items():
+    for name, (unit, _) in record.variables(case).items():
         numbers[f"{name} [{unit}]"] = float(solution.states[name][state])
     with atomic_write(output) as beside:
         mesh.write(beside, file_format="vtu")

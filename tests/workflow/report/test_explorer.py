@@ -126,7 +126,7 @@ def more(tmp_path_factory):
         if case.model == "cylinder":
             solution, _ = solve(case, None, folder / "log", Limits(wall_time=60, memory=2000))
         else:
-            states = unreached(3, variables(case.path))
+            states = unreached(3, variables(case))
             states |= {"contraction": np.array(case.path.stops), "force": np.array([5.0, 3.0, 1.0])}
             stress = np.array([[-0.3, 0.1, 0.2, 1.0], [0, 0, 0.5, 0.8], [-0.3, 0, -0.4, -0.6]])
             fields = {
