@@ -313,6 +313,20 @@ def test_refusals_name_the_law_and_its_parameters(values, said):
         rubber.from_dict(values)
 
 
+def test_both_conventions_of_ogden_write_one_rubber(make_case, solve_case):
+    """mu of textbooks is 2 mu / alpha of Abaqus; the same numbers are two rubbers."""
+    of_abaqus = [mu * alpha / 2 for mu, alpha in zip(OGDEN["mu"], OGDEN["alpha"], strict=True)]
+    one = MATERIALS["ogden"]
+    other = made("ogden", convention="abaqus", mu=of_abaqus, alpha=OGDEN["alpha"])
+    assert other.shear_modulus == pytest.approx(one.shear_modulus, rel=1e-14)
+    assert MATERIALS["ogden, of Abaqus"].shear_modulus != pytest.approx(one.shear_modulus, rel=0.01)
+    for model in ("cylinder", "membrane"):
+        found = [
+            solve_case(make_case(model=model, rubber=each)).states["force"] for each in (one, other)
+        ]
+        assert found[0] == pytest.approx(found[1], rel=1e-10)
+
+
 @pytest.mark.parametrize("law", ALL)
 def test_energy_of_the_cylinder_with_twist(make_case, law):
     """Its forces are slopes of its energy."""
