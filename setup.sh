@@ -150,6 +150,6 @@ is_complete || install_python_packages
 [[ -x .venv/bin/muscle ]] || write_command
 [[ -z $SLURM ]] || install_slurm_plugin
 say "Everything is installed. Next:
-    .venv/bin/snakemake --cores 2 smoke    a small study, for a first look
-    .venv/bin/snakemake --cores 2          the whole study
-    .venv/bin/pytest                       the tests"
+    .venv/bin/snakemake --cores 2 --config study=config/smoke/study.yaml    a small study, for a first look
+    .venv/bin/snakemake --cores 2                                           the whole study
+    .venv/bin/pytest                                                        the tests"

@@ -1,4 +1,4 @@
-"""setup.sh asks only for what is missing, and the lock belongs to pyproject.toml."""
+"""setup.sh asks only for what is missing; lock, hooks and container are as it and pyproject say."""
 
 import re
 import shutil
@@ -7,6 +7,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -117,3 +118,39 @@ def test_old_python_is_refused(bare_machine) -> None:
     result = bare_machine(libraries, freefem=True)
     assert result.returncode == 1
     assert "Python 3.11 or newer" in result.stderr
+
+
+def test_hooks_before_a_commit_are_the_linters_of_ci():
+    hooks = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text())["repos"][0]["hooks"]
+    steps = re.findall(r"^step (\S+)(.*?)(?: #.*)?$", (ROOT / ".ci/run").read_text(), re.M)
+    linters = ("ruff", "mypy", "snakefmt", "lint-workflow")
+    asked = {
+        f"{program}{words}".partition(" Snakefile")[0].strip()
+        for program, words in steps
+        if Path(program).name in linters
+    }
+    assert {hook["entry"] for hook in hooks} == asked
+    assert len(asked) == 5
+    assert all(hook["language"] == "system" for hook in hooks)
+
+
+def test_the_container_is_set_up_by_setup():
+    """It brings what setup.sh itself needs on a bare Debian, and nothing that setup.sh installs."""
+    text = (ROOT / "Containerfile").read_text()
+    setup = (ROOT / "setup.sh").read_text()
+    assert "FROM debian:12\n" in text
+    assert "cd /muscle && ./setup.sh \\\n" in text
+    (installed,) = re.findall(r"apt-get install --yes --no-install-recommends (.*) \\", text)
+    assert set(installed.split()) == {"ca-certificates", "python3", "python3-venv"}
+    assert "pip install" not in text
+    (launcher,) = re.findall(r"cat >(\S+/muscle) <<", setup)
+    assert f'ENTRYPOINT ["/muscle/{launcher}"]' in text
+    ignored = (ROOT / ".containerignore").read_text().split()
+    assert {".git", ".venv", "results"} <= set(ignored)
+
+
+def test_the_catalog_names_the_command_and_the_report():
+    usage = yaml.safe_load((ROOT / ".snakemake-workflow-catalog.yml").read_text())["usage"]
+    assert usage["report"] is True
+    assert "./setup.sh" in usage["mandatory-flags"]["desc"]
+    assert usage["mandatory-flags"]["flags"] == "--cores"

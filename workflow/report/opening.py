@@ -46,20 +46,19 @@ STYLE = """
 """
 
 
-def prepare(plan: Plan, results: Path, pages: Iterable[Page]) -> tuple[Path, list[Page]]:
-    """Write the opening, and every page that can be made of what there is.
+def prepare(plan: Plan, results: Path, ready: Iterable[Page]) -> Path:
+    """Write the opening, which is returned, and the pages that are ready.
 
     A report runs no job, so its pages are written here: those of figures and tables after a usual
     run, those of an analysis after that.
     """
-    ready = [page for page in pages if page.is_ready]
     for page in ready:
         output = results / f"report/{page.name}.html"
         html_page.write(output, page.title, page.caption, page.pictures, page.all_tables)
     fitting = [each for each in ANALYSES.values() if each.fits(plan.study)]
     with atomic_write(results / FILE) as beside:
         beside.write_text(text(results, fitting), encoding="utf-8")
-    return results / FILE, ready
+    return results / FILE
 
 
 def text(results: Path, fitting: Sequence[Analysis]) -> str:

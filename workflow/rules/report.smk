@@ -12,10 +12,11 @@
 if REPORTING:
     from workflow.report import opening
 
-    OPENING, READY = opening.prepare(PLAN, Path(RESULTS), PAGES.values())
+    READY = [page for page in PAGES.values() if page.is_ready]
     REPORTED = [reported(page) for page in READY] + explored()
     if not REPORTED:
         sys.exit("There is nothing to report yet: run snakemake --cores 2 first")
+    OPENING = opening.prepare(PLAN, Path(RESULTS), READY)
 
     report: str(OPENING.resolve())
 

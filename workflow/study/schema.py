@@ -20,6 +20,7 @@ from pydantic import (
     Discriminator,
     Field,
     Tag,
+    WithJsonSchema,
     create_model,
 )
 from pydantic_core import PydanticCustomError
@@ -129,7 +130,7 @@ def _one_of(*allowed: str) -> Any:
             raise refusal(choices(value, allowed))
         return value
 
-    return Annotated[str, BeforeValidator(check)]
+    return Annotated[str, BeforeValidator(check), WithJsonSchema({"enum": [*allowed]})]
 
 
 def _some_of(*allowed: str) -> Any:
@@ -142,7 +143,8 @@ def _some_of(*allowed: str) -> Any:
                 raise refusal(f"{choices(name, allowed)}; not {shown(name)}")
         return tuple(name for name in allowed if name in names)
 
-    return Annotated[tuple[str, ...], BeforeValidator(check)]
+    words = {"type": "array", "items": {"enum": [*allowed]}}
+    return Annotated[tuple[str, ...], BeforeValidator(check), WithJsonSchema(words)]
 
 
 def _maps(value: object) -> tuple[str, ...]:

@@ -1,0 +1,1 @@
+"""The site: pages of docs/ by Sphinx, with what is made of the code."""
