@@ -19,6 +19,7 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 from sphinx.util.docutils import SphinxDirective
 
+from solver.sources import ROOT
 from workflow.report.site import gallery, reference
 
 PARTS: Mapping[str, Callable[[], str]] = {**reference.PARTS, **gallery.PARTS}
@@ -27,8 +28,15 @@ PARTS: Mapping[str, Callable[[], str]] = {**reference.PARTS, **gallery.PARTS}
 def setup(app: Sphinx) -> dict[str, Any]:
     """Called by Sphinx."""
     app.add_directive("generated", Generated)
+    app.connect("source-read", _turn_links)
     app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
     return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def _turn_links(app: Sphinx, page: str, content: list[str]) -> None:
+    """Links to files that are pages of the site lead there, as to the study file's keys."""
+    folder = (ROOT / "docs" / page).parent
+    content[0] = reference.with_links(content[0], folder, folder)
 
 
 class Generated(SphinxDirective):

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from solver import record, status
@@ -181,19 +182,23 @@ PAGES_OF_FILES = {  # that are read on the way to the repository; where they sta
 
 
 def page(file: str) -> str:
-    """A file of the repository as a page, its links to others turned into those of the site."""
-    here = (ROOT / "docs" / PAGES_OF_FILES[file]).parent
+    """A file of the repository as a page."""
+    text = (ROOT / file).read_text(encoding="utf-8")
+    return with_links(text, (ROOT / file).parent, (ROOT / "docs" / PAGES_OF_FILES[file]).parent)
+
+
+def with_links(text: str, folder: Path, here: Path) -> str:
+    """A text that stands in a folder, its links turned into those of a page of the site."""
 
     def turned(match: re.Match[str]) -> str:
         target, mark, part = match[1].partition("#")
         if not target or re.match(r"[a-z]+:", target):
             return match[0]
-        path = (ROOT / file).parent / target
-        found = os.path.relpath(path, ROOT)
-        on_site = ROOT / "docs" / PAGES_OF_FILES.get(found, os.path.relpath(path, ROOT / "docs"))
+        found = os.path.relpath(folder / target, ROOT)
+        on_site = ROOT / "docs" / PAGES_OF_FILES[found] if found in PAGES_OF_FILES else ROOT / found
         return f"]({os.path.relpath(on_site, here)}{mark}{part})"
 
-    return re.sub(r"\]\(([^()\s]+)\)", turned, (ROOT / file).read_text(encoding="utf-8"))
+    return re.sub(r"\]\(([^()\s]+)\)", turned, text)
 
 
 PARTS: Mapping[str, Callable[[], str]] = {
