@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from geometry.muscle import Muscle
 from solver.case import Case
 from solver.load_path import ZERO_FORCE, PathKind
-from solver.record import SLEEVED, VARIABLES, Solution
+from solver.record import IN_TIME, SLEEVED, VARIABLES, Solution
 from solver.status import CaseStatus, StateStatus
 from workflow.data import records
 from workflow.data.records import Curve, SolvedCase
@@ -221,6 +221,7 @@ COLUMN = {name: f"{name} [{unit}]" for name, (unit, _) in (VARIABLES | SLEEVED).
 CONTRACTION, PRESSURE, FORCE = COLUMN["contraction"], COLUMN["pressure"], COLUMN["force"]
 DIAMETER, WALL = "inner_diameter [mm]", "wall_thickness [mm]"
 ANGLE, THREADS = "braid_angle [deg]", "threads [1]"
+TIME = f"time [{IN_TIME['time'][0]}]"  # of states along a path in time
 CONTROL = {"contraction": CONTRACTION, "pressure": PRESSURE, "load": FORCE}
 GOOD = StateStatus.CONVERGED.value
 SHOWN = (GOOD, StateStatus.UNSTABLE.value)  # statuses whose numbers may be shown

@@ -25,6 +25,7 @@ from workflow.data.states import (
     STRENGTH,
     STRETCH,
     SUSPECT,
+    TIME,
     error_of,
 )
 from workflow.data.strain import LONG
@@ -127,9 +128,9 @@ def style_of(source: str, name: str, number: int) -> dict[str, Any]:
 
 
 def curve(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
-    """The stops of one curve, in the order of ``x``; a map has markers at its own points."""
+    """The stops of one curve, by ``x``, or as time goes; a map has markers at its own points."""
     stops = (rows["point"] != "zero force") & (rows["status"] != SUSPECT)
-    rows = rows[stops].sort_values(x)
+    rows = rows[stops] if TIME in rows else rows[stops].sort_values(x)
     good = rows["status"].isin([GOOD, REFERENCE])
     values = rows[y].where(good).to_numpy(dtype=float)
     if ax.get_yscale() == "log":

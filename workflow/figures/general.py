@@ -1,7 +1,8 @@
 """Any scene with a path: one quantity against another, with the force maps of its muscles.
 
 What a scene says under ``figure`` chooses: quantities, what colours tell apart, maps, title. A
-scene that is one of the paper's figures and says nothing there has a module of its own.
+scene that is one of the paper's figures and says nothing there has a module of its own. Cycles are
+drawn as loops, other scenes in time against time; both have no maps.
 """
 
 from typing import Any
@@ -10,16 +11,21 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from solver.load_path import PathKind
-from solver.record import SLEEVED, VARIABLES
+from solver.record import IN_TIME, SLEEVED, VARIABLES
 from workflow.data import bench
 from workflow.data.states import (
     COLUMN,
     CONTRACTION,
     CONTROL,
+    FLAGS,
     FORCE,
     PRESSURE,
     REFERENCE,
+    SHOWN,
+    STRENGTH,
+    STRETCH,
     SUSPECT,
+    TIME,
     reference_at,
     reference_curves,
     states,
@@ -30,25 +36,29 @@ from workflow.figures.style import COLUMN_WIDTH, look_of, panels, percent
 from workflow.study.schema import FigureEntry
 
 OF_MAP = {CONTRACTION, PRESSURE, FORCE}  # columns that a force map has
+HELD, PERIOD = "held", "period"  # columns of scenes in time
 MODEL = "model"  # what curves may be told apart by, beside muscle, variant and the held value
 
 
 def table(data: Any) -> pd.DataFrame:
     """States of all curves, and those of the maps where a map has what is shown."""
     kind, chosen = PathKind(data.scene.kind), data.scene.figure or FigureEntry()
-    held = CONTROL[kind.held.key]
-    x = _column(chosen.x or kind.swept.key)
+    held, timed = CONTROL[kind.held.key], data.scene.in_time
+    x = _column(chosen.x or ("time" if data.scene.path == "transient" else kind.swept.key))
     y = _column(chosen.y or kind.follows)
-    frames = [states(data, [name for name in VARIABLES | SLEEVED if COLUMN[name] in {x, y}])]
-    if chosen.compare == "reference" and {x, y, held} <= OF_MAP and kind.held.key != "load":
-        frames += _measured(data, kind)
+    if timed:
+        held, frames = HELD, _over_time(data, kind, {x, y})
+    else:
+        frames = [states(data, [name for name in VARIABLES | SLEEVED if COLUMN[name] in {x, y}])]
+        if chosen.compare == "reference" and {x, y, held} <= OF_MAP and kind.held.key != "load":
+            frames += _measured(data, kind)
     every = pd.concat(frames, ignore_index=True)
     told_apart = {
         "muscle": ["muscle", held],
         "held": [held, "muscle"],
         "variant": ["variant", "muscle", held],
         "model": [MODEL, "muscle", held],
-    }[chosen.by]
+    }[chosen.by] + [PERIOD] * timed
     every[MODEL] = every["source"].map(lambda source: look_of(source)["label"])
     every["variant"] = every["variant"].fillna("default")
     every[SERIES] = series(every, told_apart, apart=False)
@@ -83,8 +93,35 @@ def draw(table: pd.DataFrame) -> Figure:
     return figure
 
 
+def _over_time(data: Any, kind: PathKind, columns: set[str]) -> list[pd.DataFrame]:
+    """The states of curves in time, in their order."""
+    found = []
+    for curve in data.curves:
+        place, solution = curve.place, curve.solution
+        status = [status.value for status in solution.state_status]
+        known = [each in SHOWN for each in status]
+        numbers = {
+            _column(name): pd.Series(values).where(known)
+            for name, values in solution.states.items()
+            if _column(name) in {TIME, STRETCH} | columns
+        }
+        rows = pd.DataFrame(
+            {"source": place.model, "muscle": place.muscle, "variant": place.variant}
+            | {HELD: kind.held.text(place.held), PERIOD: f"{place.period:g} s"}
+            | {"point": "stop"}
+            | numbers
+            | {"status": status}
+            | {FLAGS: [" ".join(sorted(flags)) for flags in solution.flags]}
+        )
+        bears = data.studied[place.muscle].limits.thread_strength
+        found.append(rows.assign(**{STRENGTH: float(bears) if bears else float("nan")}))
+    return found
+
+
 def _column(name: str) -> str:
     """The column of a quantity or of a control, a load being a force."""
+    if name in IN_TIME:
+        return f"{name} [{IN_TIME[name][0]}]"
     return CONTROL.get(name) or COLUMN[name]
 
 

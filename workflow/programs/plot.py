@@ -10,7 +10,7 @@ from workflow.data.states import SceneData
 from workflow.plan.plan import Plan
 from workflow.programs import add_study, plan_of
 from workflow.study.errors import StudyError, choices
-from workflow.study.schema import HELD_KEY, SHOWN, SWEPT_KEY, Scene
+from workflow.study.schema import HELD_KEY, SHOWN, SWEPT_KEY, TIMED, Scene
 
 ENDINGS = (".png", ".svg", ".csv")
 
@@ -87,10 +87,11 @@ def chosen(plan: Plan, given: argparse.Namespace) -> Chosen:
 
 def run(given: argparse.Namespace) -> int:
     """Draw them."""
+    known = [name for name in SHOWN if name not in TIMED]
     for axis in ("x", "y"):
         asked = getattr(given, axis)
-        if asked not in (None, *SHOWN):
-            raise StudyError(f"--{axis} {asked}: no such quantity; {choices(asked, SHOWN)}")
+        if asked not in (None, *known):
+            raise StudyError(f"--{axis} {asked}: no such quantity; {choices(asked, known)}")
     if given.output.suffix not in ENDINGS:
         raise StudyError(f"--output {given.output}: the ending is {', '.join(ENDINGS)}")
     plan = plan_of(given)

@@ -21,6 +21,7 @@ from workflow.study.schema import (
     QUANTITIES,
     SHEET,
     SWEPT_KEY,
+    TIMED,
     CalibrationEntry,
     Scene,
     StudyFile,
@@ -54,13 +55,14 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
     if asked.path is None:
         unused = (
             *("pressure", "contraction", "load", "models", "effects", "tolerance", "quantities"),
-            *("cycle", "transient"),
+            *("cycle", "transient", "figure"),
         )
         for key in [key for key in unused if getattr(asked, key)][:1]:
             value = _as_written(getattr(asked, key))
-            value = "a mapping" if key in ("cycle", "transient") else value
+            value = "a mapping" if key in ("cycle", "transient", "figure") else value
             yield source.refuse((*keys, key), value, "this key is not used without a path")
         return
+    yield from _figure(source, keys, asked)
     if asked.in_time:
         yield from _in_time(source, keys, asked)
         return
@@ -89,6 +91,15 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
             yield source.refuse((*keys, "quantities"), quantity, allowed)
     if all(getattr(asked, key) is not None for key in factors):
         yield from _values(source, keys, asked)
+
+
+def _figure(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
+    """Quantities that a figure shows, which its scene must have."""
+    for axis in ("x", "y"):
+        shown = getattr(asked.figure, axis, None)
+        if shown in TIMED and not asked.in_time:
+            allowed = f"a quantity of states out of time, on an {asked.path} path"
+            yield source.refuse((*keys, "figure", axis), shown, allowed)
 
 
 def _frequency(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:

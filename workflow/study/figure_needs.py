@@ -44,7 +44,7 @@ def module(name: str, scene: Scene) -> str:
     """
     if has_own(name) and scene.figure is None:
         return name
-    return GENERAL if scene.path is not None and not scene.in_time else ""
+    return GENERAL if scene.path is not None else ""
 
 
 def has_own(name: str) -> bool:

@@ -5,23 +5,48 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
+from solver import record
+from solver.freefem import Limits
+from solver.solve import solve
 from workflow.__main__ import main
 from workflow.data import bench
-from workflow.data.states import COLUMN, CONTRACTION, FORCE, PRESSURE, SceneData
+from workflow.data.states import COLUMN, CONTRACTION, FORCE, PRESSURE, TIME, SceneData
 from workflow.figures import general, style
 from workflow.figures.labels import SERIES
 from workflow.plan.plan import read
 from workflow.study.errors import StudyError
 
-from ..synthetic import STUDY, planned, write_records
+from ..synthetic import MUSCLE, STUDY, planned, write_records
+
+TIMED = (
+    MUSCLE.replace(
+        "c01: 0.083805}", "c01: 0.083805, memory: {per_decade: 0.06, from: 1e-2, to: 10}}"
+    )
+    + """\
+scenes:
+  loops:
+    path: cycle
+    muscles: [one]
+    cycle: {held: pressure, period: [4, 40], cycles: 1, samples: 12}
+    pressure: [0.3]
+    contraction: [0, 0.2]
+    models: [cylinder]
+  drop:
+    path: transient
+    muscles: [one]
+    load: [49]
+    transient: {supply: [[0, 0.1], [0.01, 0.3], [1, 0.3]], duration: 0.02, step: 0.002}
+    models: [cylinder]
+    figure: {y: work}
+"""
+)
 
 
 @pytest.fixture
 def scene(tmp_path):
     """Data of a scene of the small study, with what it says of its figure."""
 
-    def read(name, figure=""):
-        text = STUDY
+    def read(name, figure="", text=STUDY):
         if figure:
             head = f"  {name}:\n"
             text = STUDY.replace(head, f"{head}    figure: {figure}\n")
@@ -86,6 +111,48 @@ def test_maps_only_where_they_are_wanted(scene):
     assert set(table["source"]) == {"membrane", "solid"}
     isometric = general.table(scene("threshold"))
     assert "festo_musclesim" in set(isometric["source"])
+
+
+@pytest.fixture(scope="module")
+def timed(tmp_path_factory):
+    """Scenes in time, solved."""
+    folder = tmp_path_factory.mktemp("timed")
+    plan = planned(folder, TIMED)
+    (folder / "cases").mkdir()
+    for key, each in plan.cases.items():
+        solution, _ = solve(each.case, None, folder / "log", Limits(wall_time=60, memory=2000))
+        record.write(folder / f"cases/{key}.h5", each.case, solution)
+    return lambda name: SceneData.read(plan, name, folder / "cases")
+
+
+def test_a_cycle_is_drawn_as_its_loop(timed):
+    data = timed("loops")
+    table = general.table(data)
+    assert set(table[SERIES]) == {"4 s", "40 s"}
+    (ax,) = general.draw(table).axes
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("contraction [%]", "force [N]")
+    drawn = [line for line in ax.lines if len(line.get_xdata()) == 13]
+    for curve, line in zip(data.curves, drawn, strict=True):
+        for values, name in ((line.get_xdata(), "contraction"), (line.get_ydata(), "force")):
+            np.testing.assert_array_equal(values, curve.solution.states[name])
+    there, back = drawn[0].get_ydata()[3], drawn[0].get_ydata()[9]
+    assert abs(there - back) > 1  # of one contraction: it is a loop
+
+
+def test_what_follows_a_supply_is_drawn_over_time(timed):
+    table = general.table(timed("drop"))
+    (ax,) = general.draw(table).axes
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("time [s]", "work [N*mm]")
+    assert "49 N" in ax.get_title("left")
+    np.testing.assert_allclose(table[TIME], np.arange(11) * 0.002, atol=1e-12)
+
+
+def test_a_figure_shows_what_its_scene_has(scene):
+    with pytest.raises(StudyError, match=r"figure.y = 'work' is refused(?s:.*)out of time"):
+        scene("curves", "{y: work}")
+    text = STUDY.replace("  few:\n", "  whole: {muscles: [one], figure: {y: force}}\n  few:\n")
+    with pytest.raises(StudyError, match="not used without a path"):
+        scene("few", text=text)
 
 
 def test_the_same_table_gives_the_same_bytes(scene, tmp_path):
