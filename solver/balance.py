@@ -32,7 +32,7 @@ def errors(case: Case, states: dict[str, NDArray[np.float64]]) -> list[tuple[flo
 def unbalanced(case: Case, states: dict[str, NDArray[np.float64]]) -> str:
     """Which cycle is not balanced, and by how much; empty if all are, or nothing can be lost."""
     for number, (off, lost) in enumerate(errors(case, states), 1):
-        if case.remembers and not abs(off) <= MOST * lost:
+        if (case.remembers or case.rubs) and not abs(off) <= MOST * lost:
             return (
                 f"steps too long in time: in cycle {number} work differs by {abs(off):.2g} N mm "
                 f"from what is stored and dissipated, of {lost:.3g} N mm; more samples"

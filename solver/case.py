@@ -30,6 +30,7 @@ from solver.effects import (
     check_carried,
     switches,
 )
+from solver.friction import Friction, no_crossings
 from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
 from solver.memory import Memory
@@ -54,6 +55,7 @@ class Case:
     ----------
     fields_at : stops of the path at which fields (deformed shape, stress) are recorded too
     memory : of the rubber; only read where it can matter, in time or in a vibration
+    friction : of the crossings of its sleeves; only read in time
     frequencies : of small vibrations, whose stiffness is found at every state of the path [Hz]
     numerics : what goes with the size of the muscle and was left out is filled in
 
@@ -72,6 +74,7 @@ class Case:
     numerics: Numerics = field(default_factory=Numerics)
     fields_at: tuple[float, ...] = ()
     memory: Memory | None = None
+    friction: Friction | None = None
     frequencies: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
@@ -119,10 +122,22 @@ class Case:
         if self.remembers and self.effects.twist is Twist.FREE:
             allowed = "held with a memory, whose branches have no shear"
             raise UnsolvableCase("twist", self.effects.twist, allowed)
+        if self.friction is not None:
+            self._check_friction()
         slack = path.kind is PathKind.ISOMETRIC and min(path.stops) <= 0
         if slack and model.crumples:
             allowed = f"pressures > 0 at a held contraction: without, {self.model} has no wall"
             raise UnsolvableCase("stops", min(path.stops), allowed)
+
+    def _check_friction(self) -> None:
+        """Refuse friction of what does not cross, or turns with the muscle."""
+        if allowed := no_crossings(self.muscle.braid):
+            raise UnsolvableCase("friction", plain(self.friction), allowed)
+        if self.effects.twist is Twist.FREE:
+            raise UnsolvableCase("twist", self.effects.twist, "held where a sleeve has friction")
+        if self.effects.stretch is Stretch.RIGID:
+            allowed = "elastic where a sleeve has friction"
+            raise UnsolvableCase("stretch", self.effects.stretch, allowed)
 
     def _check_frequencies(self) -> None:
         """Refuse vibrations that cannot be, or of a model that has none."""
@@ -152,6 +167,11 @@ class Case:
         """Whether the memory of the rubber matters on the path."""
         has = self.memory is not None and self.effects.rubber is Rubber.ELASTIC
         return has and self.path.history is not None
+
+    @property
+    def rubs(self) -> bool:
+        """Whether friction of sleeves matters on the path."""
+        return self.friction is not None and self.path.history is not None
 
     @property
     def vibrates(self) -> bool:
@@ -187,6 +207,8 @@ class Case:
         if self.remembers or self.vibrates:
             assert self.memory is not None
             values["memory"] = plain(self.memory)
+        if self.rubs:
+            values["friction"] = plain(self.friction)
         if self.vibrates:
             values["frequencies"] = self.frequencies
         if self.fields_at:
@@ -203,7 +225,7 @@ class Case:
         """Names of the effects that are on (solver/effects.py), and of those in time."""
         found = active(self.model, self.effects, braided=self.muscle.braid is not None)
         history = self.path.history
-        found += ["memory"] * self.remembers
+        found += ["memory"] * self.remembers + ["friction"] * self.rubs
         if history is not None:
             found += ["mass"] * (history.mass > 0) + ["valve"] * (history.valve is not None)
         return found
@@ -283,6 +305,8 @@ class Case:
         }
         if "memory" in given:
             parts["memory"] = build(Memory, given["memory"], UnsolvableCase, "memory")
+        if "friction" in given:
+            parts["friction"] = build(Friction, given["friction"], UnsolvableCase, "friction")
         if "frequencies" in given:
             found = given["frequencies"]
             parts["frequencies"] = tuple(found) if isinstance(found, list) else found

@@ -23,7 +23,7 @@ def way(case: Case) -> list[Waypoint]:
 
 
 def write(case: Case, work: Path) -> None:
-    """Write the files that solver/path/in_time.idp reads, and the branches of a memory."""
+    """Write what solver/path/in_time.idp reads, and the branches of a memory, and friction."""
     (work / "history.txt").write_text(history_text(case))
     if case.remembers:
         assert case.memory is not None
@@ -32,6 +32,10 @@ def write(case: Case, work: Path) -> None:
         pairs = zip(case.memory.shares, case.memory.times, strict=True)
         lines += [f"{float(share)!r} {float(time)!r}" for share, time in pairs]
         (work / "branches.txt").write_text("\n".join(lines) + "\n")
+    if case.rubs:
+        assert case.friction is not None
+        stiffness = case.friction.stiffness(case.muscle.outer_radius)
+        (work / "friction.txt").write_text(f"{case.friction.lever!r} {stiffness!r}\n")
 
 
 def history_text(case: Case) -> str:

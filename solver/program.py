@@ -31,6 +31,7 @@ def composition(case: Case) -> str:
     threads = case.effects.threads if case.muscle.braid else "none"
     files = [f"threads_{threads}.idp", *MODELS[case.model].composition(case)]
     macros = {"remembers": case.remembers or case.vibrates, "vibrates": case.vibrates}
+    macros["rubs"] = case.rubs
     said = "".join(f"macro {name}() // EOM\n" for name, is_so in macros.items() if is_so)
     return said + "".join(f'include "{name}"\n' for name in files)
 

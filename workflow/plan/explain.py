@@ -78,7 +78,15 @@ def _memories(plan: Plan, scene: Scene) -> Iterator[str]:
                 f"{len(memory.times)} branches of {memory.times[0]:g} to {memory.times[-1]:g} s, "
                 f"{100 * sum(memory.shares):.3g} % of the long-term stiffness"
             )
+        if scene.effects.get("memory") == "off":
+            said = "left out by the scene"
         yield f"  memory   {name}: {said}"
+        friction = plan.study.muscles[name].friction
+        if friction is not None and scene.effects.get("friction") != "off":
+            yield (
+                f"  friction {name}: coefficient {friction.coefficient:g}, of crossings with a "
+                f"radius of {friction.contact:g} mm"
+            )
 
 
 def _models(scene: Scene, choice: Choice, estimates: Sequence[Estimate]) -> Iterator[str]:

@@ -285,15 +285,15 @@ def refusal(model: str, scene: Scene) -> str:
     if scene.in_time and not MODELS[model].in_time:
         return "knows no time"
     try:
-        effects = readable(model, switched(Effects(), scene.effects))
+        effects = readable(model, switched(Effects(), scene.switches))
     except UnsolvableCase as error:
         return str(error)
     before = set(active(model, Effects(), braided=True))
     now = set(active(model, effects, braided=True))
-    for name, state in scene.effects.items():
+    for name, state in scene.switches.items():
         if (name in now) != (state == "on"):
             return f"carries no {name}" if state == "on" else f"cannot leave out {name}"
-    lost = before - now - set(scene.effects)
+    lost = before - now - set(scene.switches)
     if lost:
         return f"would leave out {', '.join(sorted(lost))} too"
     return ""
@@ -303,7 +303,7 @@ def _variant(
     variant: Variant, name: str, scene: Scene, chosen: Estimate | None
 ) -> tuple[str, Variant]:
     """A variant with what scene and planner add to it, and its label in the dataset."""
-    label, effects, numerics = name, switched(variant.effects, scene.effects), variant.numerics
+    label, effects, numerics = name, switched(variant.effects, scene.switches), variant.numerics
     if scene.effects:
         label += "".join(f"_{effect}_{state}" for effect, state in sorted(scene.effects.items()))
     if chosen is not None and chosen.rung.mesh != "default":

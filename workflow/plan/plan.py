@@ -301,7 +301,8 @@ def _case(
             "effects": effects,
             "numerics": variant.numerics,
             "fields_at": _fields_at(scene, place, path),
-            "memory": muscle.memory,
+            "memory": None if scene.effects.get("memory") == "off" else muscle.memory,
+            "friction": None if scene.effects.get("friction") == "off" else muscle.friction,
             "frequencies": scene.frequency or (),
         },
         {"model": "models", "stops": SWEPT_KEY[scene.kind]},
@@ -313,7 +314,7 @@ def _case(
 def _fields_at(scene: Scene, place: Place, path: LoadPath) -> tuple[float, ...]:
     """Stops at which fields are recorded: all that the scene names; of a sheet the last."""
     if FIELDS & set(scene.quantities):
-        return scene.swept
+        return tuple(sorted(set(path.stops))) if scene.in_time else scene.swept
     wanted = SHEET in scene.quantities and bool(MODELS[place.model].fields)
     return path.stops[-1:] if wanted else ()
 

@@ -18,6 +18,7 @@ from workflow.study.limits import HIGHEST
 from workflow.study.schema import (
     FORCE_MAPS,
     HELD_KEY,
+    OF_TIME,
     QUANTITIES,
     SHEET,
     SWEPT_KEY,
@@ -63,6 +64,15 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
             yield source.refuse((*keys, key), value, "this key is not used without a path")
         return
     yield from _figure(source, keys, asked)
+    for effect in OF_TIME:
+        state = asked.effects.get(effect)
+        if state is not None and not asked.in_time:
+            allowed = "effects of a curve out of time: this one is only in time"
+            yield source.refuse((*keys, "effects", effect), state, allowed)
+        made = [study.muscles[name] for name in asked.muscles if name in study.muscles]
+        if state == "on" and any(getattr(each, effect) is None for each in made):
+            allowed = "off; a muscle of the scene has none"
+            yield source.refuse((*keys, "effects", effect), state, allowed)
     if asked.in_time:
         yield from _in_time(source, keys, asked)
         return
@@ -123,7 +133,7 @@ def _frequency(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:
 def _in_time(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
     """A scene in time, whose quantities are those of every state."""
     for quantity in asked.quantities:
-        if quantity in ZERO_FORCE or quantity in ("stress", "deformed_shape", DYNAMIC):
+        if quantity in ZERO_FORCE or quantity == DYNAMIC:
             allowed = f"this quantity only out of time, not on a {asked.path} path"
             yield source.refuse((*keys, "quantities"), quantity, allowed)
     high = [p for p in asked.pressure or () if p > HIGHEST]

@@ -8,6 +8,7 @@ from typing import Any
 from geometry.muscle import Muscle
 from solver.case import Case
 from solver.effects import Effects
+from solver.friction import Friction
 from solver.load_path import LoadPath
 from solver.material import Thread
 from solver.memory import Memory
@@ -28,6 +29,7 @@ class StudiedMuscle:
     rubber: RubberLaw
     thread: Thread | None
     memory: Memory | None = None  # of the rubber, in time
+    friction: Friction | None = None  # of the crossings of its sleeves, in time
     limits: Limits = field(default_factory=Limits)  # of its materials
     installation: Installation = field(default_factory=Installation)
     reference: tuple[str, ...] = ()  # force maps that are of this muscle: names, paths of files

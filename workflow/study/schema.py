@@ -91,12 +91,13 @@ FORCE_MAPS = (  # read by workflow/data/reference.py
 )
 MOST_THREADS = 10_000  # more is a typing error
 IN_TIME = ("cycle", "transient")  # paths beside those of PathKind
+OF_TIME = ("memory", "friction")  # effects of muscles that only scenes in time have
 KIND_OF_HELD = {kind.held.key: kind.value for kind in PathKind}
 SENSES = {"clockwise": 1, "counter-clockwise": -1, "both": 0}  # of a layer
 _NO_BENDING = "nothing: no model has the bending of threads, which bend without resistance"
 _NO_SLIP = (
     "nothing: no model has slip of threads; in rubber they are bonded, and a sleeve moves along "
-    "with the surface on which it lies"
+    "with the surface on which it lies; its crossings have `friction` in time, a key of the muscle"
 )
 INEXPRESSIBLE = {  # keys that one might look for
     **dict.fromkeys(("bending", "bending_stiffness", "thread_bending"), _NO_BENDING),
@@ -370,6 +371,14 @@ SweepEntry = create_model(
 )
 
 
+class FrictionEntry(Entry):
+    """Friction of the crossings of a sleeve (solver/friction.py)."""
+
+    coefficient: Number
+    contact: Number  # mm
+    slip: Number = 0.005  # rad
+
+
 class MuscleEntry(Entry):
     """A muscle, or what of it differs from its ``base``; or many, by a sweep or a table."""
 
@@ -383,6 +392,7 @@ class MuscleEntry(Entry):
     lead: Number | None = None
     angle: Number | None = None
     angle_of: Name | None = None
+    friction: FrictionEntry | None = None
     layers: Annotated[list[LayerEntry], Field(min_length=1, max_length=MOST_LAYERS)] | None = None
     thread_stiffness: Number | None = None
     thread_modulus: Number | None = None
@@ -505,11 +515,16 @@ class Scene(Entry):
     load: Values | None = None  # N
     models: _some_of(*MODELS) | None = None
     variants: Names = ("default",)
-    effects: dict[_one_of(*EFFECTS), _one_of("on", "off")] = {}
+    effects: dict[_one_of(*EFFECTS, *OF_TIME), _one_of("on", "off")] = {}
     frequency: Values | None = None  # Hz
     tolerance: Annotated[Number, Field(gt=0, lt=1)] | None = None  # share of the largest value
     quantities: _some_of(*QUANTITIES) = ()
     figure: FigureEntry | None = None
+
+    @property
+    def switches(self) -> dict[str, str]:
+        """Those of the effects that are switches of a model, in time or not."""
+        return {name: state for name, state in self.effects.items() if name not in OF_TIME}
 
     @property
     def in_time(self) -> bool:

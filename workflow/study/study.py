@@ -18,6 +18,7 @@ from geometry.braid import Layer
 from geometry.muscle import AnyBraid, Braid, Muscle
 from geometry.refusal import Refusal
 from solver.effects import Effects
+from solver.friction import Friction, no_crossings
 from solver.material import Thread
 from solver.memory import Memory
 from solver.numerics import KINDS, Numerics, Spread
@@ -49,12 +50,12 @@ MODULUS = "thread_modulus"
 OF_THREAD = (EA, MODULUS, "thread_diameter", "thread_strength", "thread_density")
 BUILT_IN = ("fitting_length", "fitting_mass", "dead_volume", "ambient_pressure")
 OF_INSTALLATION = (*BUILT_IN, "thread_density", "thread_diameter")
-BRAID_KEYS = ("layer_depths", "layers", "lead", "angle", "angle_of", *OF_THREAD)
+BRAID_KEYS = ("layer_depths", "layers", "lead", "angle", "angle_of", "friction", *OF_THREAD)
 ANGLE_KEYS = ("lead", "angle", "angle_of")  # exactly one of them
 OF_LAYERS = ("threads", *ANGLE_KEYS, EA, MODULUS, "thread_diameter")  # that layers may share
 ALTERNATIVES = (("layers", "layer_depths"), (EA, MODULUS))  # of which there is one
 # What may change while a muscle stays the one that was measured: nobody has measured these.
-NOT_MEASURED = (*OF_THREAD, *BUILT_IN, "reference")
+NOT_MEASURED = (*OF_THREAD, *BUILT_IN, "friction", "reference")
 # Values beside which another one can be judged alone
 ANY_SHAPE = {"inner_diameter": 1, "wall_thickness": 1, "length": 1, "cap_length": 0, "braid": None}
 
@@ -320,8 +321,19 @@ class _Muscles:
                 {},
             ),
             reference=values.get("reference", ()),
+            friction=self._friction(name, values, made["muscle"]),
             **made,
         )
+
+    def _friction(self, name: str, values: dict[str, Any], muscle: Muscle) -> Friction | None:
+        """Of the crossings of its sleeves."""
+        if "friction" not in values:
+            return None
+        keys = ("muscles", self.source.owner(name, "friction"), "friction")
+        friction = self.source.checked(keys, Friction, values["friction"])
+        if allowed := no_crossings(muscle.braid):
+            raise self._refuse(name, "friction", "a mapping", allowed)
+        return friction
 
     def _rubber(self, name: str, values: dict[str, Any]) -> RubberLaw:
         material = values["material"]

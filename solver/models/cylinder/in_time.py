@@ -20,6 +20,7 @@ from solver.load_path import Control, Waypoint
 from solver.models.cylinder import curve
 from solver.models.cylinder.mechanics import Cylinder, State
 from solver.models.cylinder.observe import observed, volume
+from solver.models.cylinder.sleeve_friction import SleeveFriction
 from solver.models.cylinder.wall_memory import principal
 from solver.record import Solution, unreached, variables
 
@@ -98,6 +99,12 @@ class _Run:
         if reason:
             return reason
         self.state = state = self.cylinder.state(self.at)
+        if self.case.rubs:
+            assert self.case.friction is not None
+            friction = SleeveFriction(self.case.friction, self.case.muscle.layers)
+            friction.rest(*self.cylinder.pressing(state))
+            friction.advance(*self.cylinder.pressing(state))
+            self.cylinder.friction = friction
         self.length, self.speed = Rate(self._length(state)), Rate(0.0)
         self.gas = Rate(self._content(state))
         self.dissipation = self._dissipation()
@@ -229,6 +236,10 @@ class _Run:
             self.gas.end(self._content(new), length)
         if self.memory is not None:
             self.memory.advance(self._stretch(), length)
+        friction = self.cylinder.friction
+        if friction is not None:
+            friction.advance(*self.cylinder.pressing(new))
+            self.lost += friction.lost * self.case.muscle.length
         self.dissipation = self._dissipation()
         self.lost += (lost + self.dissipation) / 2 * length
         self.work += (old.force + new.force) / 2 * (self._length(new) - self._length(old))
@@ -243,6 +254,8 @@ class _Run:
         states["dissipated"][stop] = self.lost
         if self.memory is not None:
             states["energy"][stop] += self.memory.stored * self.case.muscle.length
+        if self.cylinder.friction is not None:
+            states["energy"][stop] += self.cylinder.friction.stored * self.case.muscle.length
 
     def _dissipation(self) -> float:
         """Energy that the muscle loses per second [N mm/s]."""

@@ -24,6 +24,7 @@ from geometry.braid import Kind
 from solver import rubber
 from solver.case import INCOMPRESSIBLE, Case
 from solver.effects import Rubber, Stretch, Twist, Wall
+from solver.models.cylinder.sleeve_friction import SleeveFriction
 from solver.models.cylinder.wall_memory import WallMemory
 from solver.threads import thread_law
 
@@ -75,6 +76,7 @@ class Cylinder:
             assert case.memory is not None
             self.memory = WallMemory(case.memory, case.rubber.branch, self.measure)
             self.measure = case.memory.long_term * self.measure
+        self.friction: SleeveFriction | None = None  # from the first stop of a history on
         leads = np.array([layer.lead for layer in layers])
         self.angles = np.arctan(2 * math.pi * self.layers / leads)
         self.senses = np.array([float(layer.sense) for layer in layers])
@@ -189,14 +191,22 @@ class Cylinder:
             axial, hoop = self._along_threads(r, lz, twist)
             per_square = self._tension(np.hypot(axial, hoop))
             a_layer = self._hoop_of_layers(r, lz) ** 2
-            by_a = np.append(by_a, per_square * hoop**2 / a_layer)
-            by_b = np.append(by_b, per_square * np.cos(self.angles) ** 2)
+            of_a, of_b = per_square * hoop**2 / a_layer, per_square * np.cos(self.angles) ** 2
+            if self.friction is not None:
+                self.friction.add(a_layer, b, of_a, of_b)
+            by_a, by_b = np.append(by_a, of_a), np.append(by_b, of_b)
             turning = np.sqrt(a_layer) * self.senses * self.layers * np.cos(self.angles)
             torque += np.sum(per_square * 2 * hoop * turning)
             radii, carriers = np.append(radii, self.layers), np.append(radii, self.carriers)
         by_r = np.sum(by_a * 2 * r / radii**2)
         by_lz = np.sum(by_b * 2 * lz - by_a * (carriers**2 - self.inner**2) / (lz * radii) ** 2)
         return float(by_r), float(by_lz), float(torque)
+
+    def pressing(self, state: State) -> tuple[Array, float, Array]:
+        """A of each layer, B, and the derivative of the energy of its threads by A."""
+        axial, hoop = self._along_threads(state.r, state.lz, 0.0)
+        a = self._hoop_of_layers(state.r, state.lz) ** 2
+        return a, state.lz**2, self._tension(np.hypot(axial, hoop)) * hoop**2 / a
 
     def _tension(self, stretch: Array) -> Array:
         """Derivative of each layer's energy by lf^2 [N]."""

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from solver import record
+from solver.friction import Friction
 from solver.history import Start
 from workflow.data import dataset, records
 from workflow.plan import explain
@@ -148,6 +149,42 @@ def test_a_pressure_that_jumps_is_there_twice(tmp_path):
     assert path.stops[:2] == (0, 0.3)
 
 
+def test_a_memory_is_left_out_by_a_scene(tmp_path):
+    old = f"    {CYCLE}"
+    plan = plan_of(tmp_path, old, f"{old}    effects: {{memory: off}}\n")
+    places = plan.scenes["loops"]
+    assert {place.variant for place in places} == {"default_memory_off"}
+    assert all("memory" not in plan.cases[key].case.as_dict() for key in places.values())
+    assert "memory   one: left out by the scene" in "\n".join(explain.lines(plan))
+    assert plan_of(tmp_path, old, f"{old}    effects: {{memory: on}}\n").cases
+
+
+def test_fields_of_all_states(tmp_path):
+    wanted = "    models: [membrane]\n    quantities: [deformed_shape]\n  own"
+    plan = plan_of(tmp_path, "    models: [cylinder]\n  own", wanted)
+    for key in plan.scenes["loops"].values():
+        case = plan.cases[key].case
+        assert set(case.fields_at) == set(case.path.stops)
+
+
+def test_a_sleeve_rubs(tmp_path):
+    """Its friction is read in time, and nowhere else."""
+    path = tmp_path / "study.yaml"
+    path.write_text(RUBBING)
+    plan = read(path)
+    (loop,), (still,) = plan.scenes["loops"].values(), plan.scenes["curve"].values()
+    assert plan.cases[loop].case.friction == Friction(coefficient=0.2, contact=0.3)
+    assert "friction" not in plan.cases[still].case.as_dict()
+    said = "friction one: coefficient 0.2, of crossings with a radius of 0.3 mm"
+    assert said in "\n".join(explain.lines(plan))
+    path.write_text(RUBBING.replace("kind: sleeve", "kind: embedded, depth: 1"))
+    with pytest.raises(StudyError, match="which cross"):
+        read(path)
+    path.write_text(RUBBING.replace("contact: 0.3", "contact: 30"))
+    with pytest.raises(StudyError, match=r"friction\.contact = 30"):
+        read(path)
+
+
 def test_a_curve_out_of_time_knows_no_memory(solved):
     plan = solved[0]
     (key,) = plan.scenes["curve"].values()
@@ -203,6 +240,32 @@ def test_explain_says_how_and_what_is_remembered(solved):
 
 
 CYCLE = "cycle: {held: pressure, period: [4, 40], cycles: 1, samples: 8}\n"
+RUBBING = """\
+materials:
+  soft: {c10: 0.2, c01: 0.02}
+muscles:
+  one:
+    inner_diameter: 9.5
+    wall_thickness: 1.6
+    length: 200
+    layers: [{kind: sleeve, sense: both, threads: 30, angle: 30, thread_stiffness: 400}]
+    friction: {coefficient: 0.2, contact: 0.3}
+    material: soft
+scenes:
+  loops:
+    path: cycle
+    muscles: [one]
+    cycle: {held: pressure, period: [4], cycles: 1, samples: 8}
+    pressure: [0.2]
+    contraction: [0, 0.1]
+    models: [cylinder]
+  curve:
+    path: isobaric
+    muscles: [one]
+    pressure: [0.2]
+    contraction: [0, 0.1]
+    models: [cylinder]
+"""
 
 
 @pytest.mark.parametrize(
@@ -231,6 +294,12 @@ CYCLE = "cycle: {held: pressure, period: [4, 40], cycles: 1, samples: 8}\n"
         ("models: [cylinder]\n  own", "models: [geometric]\n  own", "geometric knows no time"),
         ("path: isobaric", f"path: isobaric\n    {CYCLE}", "not used on an isobaric path"),
         ("    frequency: [1, 10]\n", "", "frequency is missing"),
+        (
+            f"    {CYCLE}",
+            f"    {CYCLE}    effects: {{friction: on}}\n",
+            "muscle of the scene has none",
+        ),
+        ("    path: isobaric", "    path: isobaric\n    effects: {memory: off}", "is only in time"),
         ("frequency: [1, 10]", "frequency: [-1, 10]", "frequencies > 0"),
         ("    quantities: [dynamic_stiffness]\n", "", "only used with the quantity"),
         (
