@@ -112,7 +112,7 @@ def curve(make_case):
 
 
 def test_the_table_of_factors_is_complete(curve):
-    others = {"model", "path.history", "frequencies"}  # test_in_time.py, test_vibration.py
+    others = {"model", "path.history", "frequencies", "friction"}  # have tests of their own
     assert every_field(curve("solid")) - others == set(FACTORS)
 
 
