@@ -192,7 +192,7 @@ def test_names_are_found():
     """That the reading above reads: some of every kind."""
     shared, every = declared("membrane_model.idp")
     assert {"Th", "Vh", "unknowns", "vEnd", "radial", "U", "evaluate", "position"} <= shared
-    assert {"strain", "forceR", "rise", "a"} <= every - shared
+    assert {"force", "a", "b"} <= every - shared
     assert "fixedUnknowns" in declared("ends_butt.idp")[0]
     assert {"residualNorm", "cutbacks", "newton", "arcShift"} <= declared("newton.idp")[0]
     assert {"kind", "targetA", "it", "a11"} <= declared("newton.idp")[1]
