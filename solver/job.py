@@ -33,8 +33,10 @@ class Job:
     limits: Limits
     code: str = ""
 
-    def run(self, start: float) -> str:
-        """Solve the case; write record and cost; ``start`` [s] is when that began.
+    def run(self, start: float, used: float = 0.0) -> str:
+        """Solve the case; write record and cost.
+
+        ``start`` [s] is when that began, ``used`` what this process had used of the processor then.
 
         Says why there is no record, if it failed for a reason outside the case; else nothing,
         however the solve went.
@@ -46,7 +48,8 @@ class Job:
             solution, usage = solve(self.case, self.mesh, self.log, self.limits)
             solving = time.process_time() - began
             record.write(self.record, self.case, replace(solution, code=self.code))
-            self._write_cost(start, solving, solution.status, usage)
+            python = time.process_time() - used - solving
+            self._write_cost(start, python, solving, solution.status, usage)
         except DamagedMesh as error:
             assert self.mesh is not None
             self.mesh.unlink(missing_ok=True)  # else it would be so for ever
@@ -55,10 +58,12 @@ class Job:
             return str(error) or type(error).__name__
         return ""
 
-    def _write_cost(self, start: float, solving: float, status: str, usage: Usage | None) -> None:
+    def _write_cost(
+        self, start: float, python: float, solving: float, status: str, usage: Usage | None
+    ) -> None:
         cost = {
             "total_seconds": time.monotonic() - start,
-            "python_cpu_seconds": time.process_time() - solving,  # of this process, from its start
+            "python_cpu_seconds": python,
             "solve_cpu_seconds": solving,  # of Python alone
             "status": status,
         }

@@ -1,9 +1,9 @@
-"""Many cases in one job: what is imported is so once, and each case has a process of its own.
+"""Many cases in one job: what is imported is so once, and as many processes as cores do the cases.
 
 A case belongs to a batch by its key alone, so one that is added touches one batch and moves no
 other. Of a batch those cases are solved that have no right record: one that is whole and was solved
-by the sources there are. Their meshes are made first, each once. Whatever happens to the process of
-a case, the others go on.
+by the sources there are. Their meshes are made first, each once. Whatever happens to the process
+that does a case, the others go on.
 
 The log of a batch has a line when a case begins and one when it ends; workflow/run/progress.py
 reads it while it grows.
@@ -197,7 +197,7 @@ def _mesh(asked: Planned, limits: Limits) -> int:
 
 def _solve(key: str, asked: Planned, limits: Limits) -> int:
     """Solve a case and write its record."""
-    start = time.monotonic()
+    start, used = time.monotonic(), time.process_time()
     damage.remove(_record(key))  # whatever comes, it is not right
     mesh = MESHES / asked.mesh if asked.mesh else None
     if mesh and not mesh.is_file():
@@ -212,7 +212,7 @@ def _solve(key: str, asked: Planned, limits: Limits) -> int:
         limits=limits,
         code=_code(asked.case),
     )
-    if why := job.run(start):
+    if why := job.run(start, used):
         say(f"{why} ({asked.label})")
     return 1 if why else 0
 
