@@ -1,9 +1,15 @@
 """What an HDF5 file says it holds, before it is read: a few bytes can declare terabytes."""
 
+import math
 from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+from solver.plain_hdf5 import get
+
+PLAIN = (0, 1)  # H5D_COMPACT, H5D_CONTIGUOUS
 
 
 class Declared:
@@ -23,26 +29,40 @@ class Declared:
                 raise ValueError(f"the attribute {name} is no single value")
 
     def child(self, group: Any, name: str) -> Any:
-        """What a group holds by a name; raises ValueError if that is somewhere else."""
-        import h5py
-
-        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-            raise ValueError(f"{name} is not in this file")
+        """The group that a group holds by a name; raises ValueError if that is somewhere else."""
+        self._here(group, name)
         return group[name]
 
-    def dataset(self, group: Any, name: str, kind: str, shape: tuple[int | None, ...]) -> Any:
-        """A dataset of a kind (``f`` or ``S``) and a shape, None for any length; or ValueError."""
-        data = self.child(group, name)
-        if len(data.shape) != len(shape) or any(
-            allowed not in (None, length) for allowed, length in zip(shape, data.shape, strict=True)
+    def dataset(
+        self, group: Any, name: str, kind: str, shape: tuple[int | None, ...]
+    ) -> NDArray[Any]:
+        """What a dataset of a kind (``f`` or ``S``) and a shape, None for any length, holds.
+
+        Raises ValueError, or KeyError, if it is none.
+        """
+        from h5py import h5d
+
+        self._here(group, name)
+        data = h5d.open(group.id, name.encode())
+        found, dtype = data.shape, data.dtype
+        if len(found) != len(shape) or any(
+            allowed not in (None, length) for allowed, length in zip(shape, found, strict=True)
         ):
-            raise ValueError(f"{name} has the shape {data.shape}, not {shape}")
-        if data.dtype.kind != kind or (kind == "f" and data.dtype != np.float64):
-            raise ValueError(f"{name} holds {data.dtype}")
-        stored = data.id.get_create_plist()
-        if data.chunks or stored.get_nfilters() or data.external or data.is_virtual:
+            raise ValueError(f"{name} has the shape {found}, not {shape}")
+        if dtype.kind != kind or (kind == "f" and dtype != np.float64):
+            raise ValueError(f"{name} holds {dtype}")
+        stored = data.get_create_plist()
+        contiguous = stored.get_layout() in PLAIN
+        if not contiguous or stored.get_nfilters() or stored.get_external_count():
             raise ValueError(f"{name} is not stored plainly")
-        self.left -= data.size * data.dtype.itemsize
+        self.left -= math.prod(found) * dtype.itemsize
         if self.left < 0:
-            raise ValueError(f"{name} of shape {data.shape} is more than the file holds")
-        return data
+            raise ValueError(f"{name} of shape {found} is more than the file holds")
+        return get(data)
+
+    def _here(self, group: Any, name: str) -> None:
+        """Raise ValueError, or KeyError, unless what a group holds by a name is in this file."""
+        from h5py import h5l
+
+        if group.id.links.get_info(name.encode()).type != h5l.TYPE_HARD:
+            raise ValueError(f"{name} is not in this file")

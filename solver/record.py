@@ -46,6 +46,7 @@ from geometry.files import atomic_write
 from solver import sources
 from solver.case import Case
 from solver.declared import Declared
+from solver.plain_hdf5 import put
 from solver.status import CaseStatus, Flag, StateStatus
 
 FILETYPE, LAYOUT = "muscle-case", 5
@@ -172,19 +173,18 @@ def _write(file: Any, case: Case, solution: Solution) -> None:
     _write_parameters(file.create_group("parameters"), case)
     states = file.create_group("states")
     for name, (unit, long_name) in variables(case).items():
-        data = states.create_dataset(name, data=solution.states[name])
-        data.attrs.update(units=unit, long_name=long_name)
+        put(states, name, solution.states[name], {"units": unit, "long_name": long_name})
     words: dict[str, list[str]] = {
         "status": [status.value for status in solution.state_status],
         "flags": [" ".join(sorted(flags)) for flags in solution.flags],
         "note": solution.notes,
     }
     for name, texts in words.items():
-        states.create_dataset(name, data=np.array([text.encode() for text in texts], "S"))
+        put(states, name, np.array([text.encode() for text in texts], "S"), {})
     for number, arrays in sorted(solution.fields.items()):
         group = file.create_group(f"fields/{number}")
         for name, values in arrays.items():
-            group.create_dataset(name, data=values)
+            put(group, name, values, {})
 
 
 def read(path: Path) -> tuple[Case, Solution]:
@@ -260,7 +260,7 @@ def _read(file: Any, size: int) -> tuple[Case, Solution]:
     states, shape = declared.child(file, "states"), (case.path.states,)
 
     def texts(name: str) -> list[str]:
-        return [text.decode() for text in declared.dataset(states, name, "S", shape)[()]]
+        return [text.decode() for text in declared.dataset(states, name, "S", shape)]
 
     return case, Solution(
         status=CaseStatus(file.attrs["status"]),
@@ -268,7 +268,7 @@ def _read(file: Any, size: int) -> tuple[Case, Solution]:
         log=file.attrs["log"],
         unknowns=int(file.attrs["unknowns"]),
         code=file.attrs["code"],
-        states={name: declared.dataset(states, name, "f", shape)[()] for name in variables(case)},
+        states={name: declared.dataset(states, name, "f", shape) for name in variables(case)},
         state_status=[StateStatus(text) for text in texts("status")],
         flags=[frozenset(map(Flag, text.split())) for text in texts("flags")],
         notes=texts("note"),
@@ -283,7 +283,7 @@ def _read_fields(file: Any, declared: Declared) -> dict[int, dict[str, NDArray[n
     fields = declared.child(file, "fields")
     groups = {int(number): declared.child(fields, number) for number in fields}
     return {
-        number: {name: declared.dataset(group, name, "f", (None, None))[()] for name in group}
+        number: {name: declared.dataset(group, name, "f", (None, None)) for name in group}
         for number, group in groups.items()
     }
 
@@ -298,7 +298,7 @@ def code_digest(*models: str, law: str = "") -> str:
 def _write_parameters(group: Any, case: Case) -> None:
     """One scalar (or list) dataset per value of the case; numbers with their unit."""
     for name, (value, attributes) in parameters(case).items():
-        group.create_dataset(name, data=value).attrs.update(attributes)
+        put(group, name, value, attributes)
 
 
 def parameters(case: Case) -> dict[str, tuple[Any, dict[str, str]]]:
