@@ -76,12 +76,12 @@ def test_a_case_that_is_killed_or_broken_loses_itself_only(cases, tmp_path, monk
     run = batches.Job.run
     first, second, _ = keys_of(cases, "geometric")
 
-    def flawed(job, start):
+    def flawed(job, start, used):
         if job.case.key == first:
             os.kill(os.getpid(), 9)
         if job.case.key == second:
             raise MemoryError
-        return run(job, start)
+        return run(job, start, used)
 
     monkeypatch.setattr(batches.Job, "run", flawed)
     lost, words = solve(cases, tmp_path)
@@ -99,7 +99,7 @@ def test_no_stale_record_is_left_by_what_is_tried_in_vain(cases, tmp_path, monke
     key = keys_of(cases, "geometric")[0]
     case, solution = record.read(CASES / f"{key}.h5")
     record.write(CASES / f"{key}.h5", case, replace(solution, code="0" * 16))
-    monkeypatch.setattr(batches.Job, "run", lambda job, start: "the disk is full")
+    monkeypatch.setattr(batches.Job, "run", lambda job, start, used: "the disk is full")
     assert solve(cases, tmp_path)[0] == 1
     assert not (CASES / f"{key}.h5").exists()
 
