@@ -1,4 +1,4 @@
-"""The same bytes wherever a study runs: in batches, in any environment, whatever dates there are."""
+"""The same bytes wherever a study runs: in batches, in any environment, whatever the dates."""
 
 import os
 import re
