@@ -83,12 +83,15 @@ function address() {
 
 /** The curves of some muscles that are chosen, with their states as points. */
 function curvesOf(muscles) {
-  const kept = DATA.curves
+  const chosen = DATA.curves
     .map((curve, number) => ({ ...curve, number }))
-    .filter((c) => c.path === choice.path && muscles.includes(c.muscle) && choice.models.includes(c.model)
+    .filter((c) => c.path === choice.path && shownMuscles().includes(c.muscle) && choice.models.includes(c.model)
       && choice.variants.includes(c.variant) && choice.held.includes(c.held));
-  const names = unique(kept.map(nameOf));
-  return kept.map((c) => ({
+  // beside each other, the same held value of two muscles has the same colour
+  const single = choice.muscles.length === 1;
+  const nameOf = (c) => `${single ? "" : c.muscle} ${c.held} ${c.period || ""}`;
+  const names = unique(chosen.map(nameOf));
+  return chosen.filter((c) => muscles.includes(c.muscle)).map((c) => ({
     ...c,
     colour: COLOURS[names.indexOf(nameOf(c)) % COLOURS.length],
     dash: DASHES[Object.keys(DATA.models).indexOf(c.model) % DASHES.length],
@@ -97,9 +100,6 @@ function curvesOf(muscles) {
     points: pointsOf(c),
   }));
 }
-
-/** What curves of one colour have in common. */
-const nameOf = (curve) => `${curve.muscle} ${curve.held} ${curve.period || ""}`;
 
 function labelOf(curve) {
   const held = DATA.paths[curve.path].held;
