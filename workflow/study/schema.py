@@ -27,12 +27,12 @@ from pydantic_core import PydanticCustomError
 
 from geometry.braid import MOST_LAYERS, Kind
 from geometry.refusal import is_count
+from solver import record
 from solver.effects import EFFECTS, Effects
 from solver.history import Start, Wave
 from solver.load_path import ZERO_FORCE, PathKind
 from solver.models import MODELS
 from solver.numerics import KINDS
-from solver.record import IN_TIME as OF_TIME
 from solver.record import SLEEVED, VARIABLES
 from solver.rubber import LAWS, default
 from solver.rubber.rubber_law import Parameter
@@ -65,7 +65,7 @@ QUANTITIES = {  # models that can give it
     **{name: tuple(MODELS) for name in ZERO_FORCE},
     SHEET: tuple(m for m in MODELS if {"volume", "stiffness"} <= set(MODELS[m].quantities)),
 }
-TIMED = tuple(OF_TIME)  # what only states along a path in time have
+TIMED = tuple(record.IN_TIME)  # what only states along a path in time have
 SHOWN = (*VARIABLES, *SLEEVED, *TIMED, "load")  # what a figure can show of a state
 REQUIRED = (  # of a design
     "force",
