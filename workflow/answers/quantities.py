@@ -43,9 +43,19 @@ KIND_OF = {unit: kind for kind, sizes in UNITS.items() for unit in sizes} | dict
 )
 PLAIN = {PRESSURE: "MPa", CONTRACTION: "1", FORCE: "N"}  # of a number without a unit
 EXAMPLES = {PRESSURE: "0.25MPa or 2.5bar", CONTRACTION: "12% or 36mm", FORCE: "200N or 5kg"}
+LARGEST = Decimal("0.6")  # contraction of a muscle
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 WRITTEN = re.compile(rf"\s*({NUMBER})\s*([^\s\d.,+-][^\s]*)?\s*")
-SPELLED = {"percent": "%", "mpa": "MPa", "kpa": "kPa", "pa": "Pa", "n": "N", "N/mm^2": "N/mm2"}
+SPELLED = {"percent": "%", "mpa": "MPa", "N/mm^2": "N/mm2", "N/mm²": "N/mm2"}
+LOOSELY = {  # in small letters, where these are no other unit: m may be milli or mega
+    **{unit.lower(): unit for unit in KIND_OF if unit[0] not in "mM"},
+    "bars": "bar",
+    "newton": "N",
+    "newtons": "N",
+    "kgs": "kg",
+    "lbs": "lb",
+    "inch": "in",
+}
 
 
 def read(text: str, length: float, kind: str = "") -> tuple[str, float]:
@@ -61,13 +71,17 @@ def read(text: str, length: float, kind: str = "") -> tuple[str, float]:
     found = WRITTEN.fullmatch(text)
     number = Decimal(found[1]) if found else Decimal("nan")
     if found is None or not is_possible(float(number)):
-        comma = "; the decimal sign is a point" if re.search(r"\d,\d", text) else ""
+        comma = ""
+        if re.search(r"\d,\d", text):
+            comma = f"; the decimal sign is a point, perhaps {text.replace(',', '.')}"
         raise StudyError(f"{shown(text)} is no quantity\n  allowed: {_examples(kind)}{comma}")
-    unit = SPELLED.get(found[2] or "", found[2] or "")
+    unit = _unit(found[2] or "")
     if not unit:
         if kind:
             return kind, _plain(kind, float(number), text)
-        raise StudyError(f"{shown(text)} has no unit\n  allowed: {_examples('')}")
+        per_cent = number if number > LARGEST else 100 * number
+        guess = f"; perhaps {per_cent.normalize():f}%" if 0 < per_cent <= 100 * LARGEST else ""
+        raise StudyError(f"{shown(text)} has no unit\n  allowed: {_examples('')}{guess}")
     if unit not in KIND_OF:
         known = [u for u, k in KIND_OF.items() if k == kind or not kind]
         raise StudyError(f"{shown(text)}: no such unit\n  allowed: {choices(unit, known)}")
@@ -76,6 +90,11 @@ def read(text: str, length: float, kind: str = "") -> tuple[str, float]:
     if unit in STROKES:
         return CONTRACTION, float(number * Decimal(STROKES[unit]) / Decimal(str(length)))
     return KIND_OF[unit], float(number * Decimal(UNITS[KIND_OF[unit]][unit]))
+
+
+def _unit(text: str) -> str:
+    """The unit that is meant, as it stands in ``KIND_OF``; what is none stays."""
+    return text if text in KIND_OF else SPELLED.get(text, LOOSELY.get(text.lower(), text))
 
 
 def _plain(kind: str, number: float, text: str) -> float:
@@ -95,7 +114,8 @@ def split(words: list[str]) -> list[str]:
     """Words of a command line, those of one quantity joined: ``0.25 MPa`` is one."""
     found: list[str] = []
     for word in words:
-        if found and re.fullmatch(NUMBER, found[-1]) and word in {*KIND_OF, *SPELLED}:
+        is_number = found and re.fullmatch(r"[-+.,\deE]*\d[.,]?", found[-1])
+        if is_number and not re.match(r"[-+.,]?\d", word):
             found[-1] += word
         else:
             found.append(word)

@@ -11,7 +11,7 @@ from typing import Any
 
 from geometry.refusal import Refusal
 from solver.case import Case
-from solver.load_path import LoadPath, PathKind
+from solver.load_path import CONTRACTION_LIMITS, LoadPath, PathKind
 from solver.models import MODELS
 from solver.record import Solution
 from solver.status import StateStatus
@@ -140,7 +140,7 @@ class _Question:
             except _Missing as missing:
                 fuller = MODELS[_model_of(rung)].fuller
                 if model is not None or not fuller:
-                    raise
+                    raise StudyError(f"{self._why_none(known)}\n  {missing}") from None
                 notes = (*notes, f"by {fuller}, as {missing.args[0]}")
                 rung, variant = fuller, self.variant
 
@@ -151,18 +151,22 @@ class _Question:
             if text is not None:
                 known[kind] = read(str(text), length, kind)[1]
         if len(known) != 2:
-            what = f"{', '.join(known) or 'nothing'} is given" if known else "nothing is given"
+            what = "all three are given" if len(known) == 3 else "nothing is given"
+            what = f"only the {next(iter(known))} is given" if len(known) == 1 else what
             raise StudyError(
-                f"{what}\n  allowed: two of pressure, contraction and force, as 0.25MPa 12%"
+                f"{what}\n  allowed: two of pressure, contraction and force, as 0.25MPa 12%; the "
+                "third is the answer"
             )
         if not 0 <= known.get(PRESSURE, 0.0) <= HIGHEST:
             raise StudyError(f"pressure {known[PRESSURE]:g} MPa\n  allowed: 0 to {HIGHEST:g} MPa")
         try:
             LoadPath(kind=PathKind.ISOBARIC, held=0.0, stops=(known.get(CONTRACTION, 0.0),))
-        except Refusal as refusal:
+        except Refusal:
             value = known[CONTRACTION]
+            low, high = (100 * limit for limit in CONTRACTION_LIMITS)
             raise StudyError(
-                f"contraction {100 * value:g} %\n  allowed: {refusal.allowed}"
+                f"contraction {100 * value:g} %: {value * length:g} mm shorter than at rest, where "
+                f"it is {length:g} mm long\n  allowed: {low:g} to {high:g} %"
             ) from None
         if PRESSURE not in known and known[FORCE] < 0:
             raise StudyError(
@@ -188,6 +192,27 @@ class _Question:
                     f"without a load it gets shorter by {100 * most:.3g} % at most"
                 )
         return {**known, asked: value}
+
+    def _why_none(self, known: Mapping[str, float]) -> str:
+        """What stands against a state, in plain words; numbers are those of the cylinder."""
+        name, pressure = self.name, known.get(PRESSURE, math.nan)
+        if FORCE not in known:
+            free = self.quick.contraction(pressure, 0.0)
+            if known[CONTRACTION] > free:
+                return (
+                    f"at {pressure:g} MPa {name} gets shorter by about {100 * free:.2g} % by "
+                    f"itself; at {100 * known[CONTRACTION]:g} % it would have to be pushed"
+                )
+        if CONTRACTION not in known:
+            blocked = self.quick.force(pressure, 0.0)
+            if known[FORCE] > blocked:
+                return (
+                    f"at {pressure:g} MPa {name} pulls about {blocked:.3g} N at its length at "
+                    f"rest; {known[FORCE]:.4g} N would draw it out further than it goes"
+                )
+            if known[FORCE] < 0:
+                return f"{name} would have to be pushed with {-known[FORCE]:g} N, and gives way"
+        return f"no such state of {name} is found"
 
     def _rung(
         self, model: str | None, tolerance: float | None, about: Mapping[str, float]
@@ -320,7 +345,7 @@ class _Question:
             CONTRACTION: state["stiffness"] * self.studied.muscle.length,
             PRESSURE: state["force_by_pressure"],
         }
-        return newtons / abs(slopes[asked]) if slopes[asked] else math.nan
+        return newtons / abs(slopes[asked]) if slopes[asked] and newtons else math.nan
 
     def _notes(self, found: Mapping[str, float]) -> list[str]:
         """What the signs of a state mean."""

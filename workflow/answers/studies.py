@@ -1,5 +1,6 @@
 """The study in which a muscle is looked for: that of a file, with what the library has."""
 
+import re
 from pathlib import Path
 
 from workflow.study import library
@@ -24,6 +25,8 @@ def with_muscle(study: Path | str, muscle: str) -> Study:
     else:
         found, where = load(study, also=[muscle]), f"{study} or the library"
     if muscle not in found.muscles:
+        if re.match(r"[-+]?\d", muscle) and re.search(r"[^\w.-]|[a-zA-Z]$", muscle):
+            raise StudyError(f"{muscle}: the name of a muscle goes first\n  as dmsp20 {muscle}")
         allowed = choices(muscle, [*found.muscles, *library.names("muscles")])
         raise StudyError(f"{muscle}: no such muscle in {where}\n  allowed: {allowed}")
     return found

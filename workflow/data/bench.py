@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver import net
+from solver.load_path import PathKind
 from workflow.data import headers, measured, reference
 from workflow.data.measured import Table
 from workflow.data.reference import CONTRACTIONS, ForceMap
@@ -43,6 +44,22 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
+class SetCurve:
+    """Measured points of one setting, which is a pressure, or a contraction.
+
+    Attributes
+    ----------
+    kind : of the path: what was set
+    at : its value [MPa or 1]
+    points : as they were measured; columns as those of a map
+    """
+
+    kind: PathKind
+    at: float
+    points: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Bench(ForceMap):
     """Measured points, and the map that is made of them.
 
@@ -51,11 +68,13 @@ class Bench(ForceMap):
     measured : all points that are used, as they were measured; columns as those of ``points``
     said : what was understood of the file, in lines
     loops : widths of loops by set pressure [N]: the largest distance of two ways
+    curves : the measured points by what was set
     """
 
     measured: NDArray[np.float64]
     said: tuple[str, ...]
     loops: dict[float, float]
+    curves: tuple[SetCurve, ...]
 
 
 def of_muscle(muscle: StudiedMuscle) -> dict[str, ForceMap]:
@@ -274,9 +293,11 @@ def _map(name: str, points: Array, said: list[str], table: Table, lines: list[in
             settings = [np.searchsorted(held_rows, members) for members in plateaus]
     curves: list[Array] = []
     loops: dict[float, float] = {}
+    measured_curves = []
     if settings is not None:
         for members in settings:
             pressure = _set_pressure(points[members, 0])
+            measured_curves.append(SetCurve(PathKind.ISOBARIC, pressure, points[members]))
             ways = _ways(points[members, 1], points[members, 2])
             mean, width = _mean(ways)
             curves.append(np.column_stack([np.full(len(mean), pressure), mean]))
@@ -293,8 +314,21 @@ def _map(name: str, points: Array, said: list[str], table: Table, lines: list[in
         curves = _of_sweeps(points, held, said, loops)
         if not curves:
             raise table.refuse("its sweeps of the pressure have no pressure in common")
-    found = np.concatenate(curves)
-    return Bench(name, name, found, np.empty((0, 3)), points, tuple(said), loops)
+        for members in held:
+            at = round(float(np.median(points[members, 1])), 9)
+            measured_curves.append(SetCurve(PathKind.ISOMETRIC, at, points[members]))
+    found, none = np.concatenate(curves), np.empty((0, 3))
+    return Bench(name, name, found, none, points, tuple(said), loops, tuple(measured_curves))
+
+
+def set_curves(found: ForceMap) -> tuple[SetCurve, ...]:
+    """Measured points by what was set; of a map its own points, by pressure."""
+    if isinstance(found, Bench):
+        return found.curves
+    points = found.points
+    return tuple(
+        SetCurve(PathKind.ISOBARIC, float(p), points[points[:, 0] == p]) for p in found.pressures
+    )
 
 
 def _settings(values: Array, close: float) -> list[NDArray[np.intp]] | None:
@@ -513,9 +547,7 @@ def _refused(study: Study, name: str) -> Iterator[StudyError]:
     count = 0
     pressures = ", ".join(f"{p:g}" for p in found.pressures[:12])
     for key in ("fit_pressure", "report_pressure"):
-        if key == "report_pressure" and not source.has((*keys, key)):
-            continue  # those that stand where none are given are reported as far as there are any
-        for pressure in getattr(entry, key):
+        for pressure in getattr(entry, key) or ():
             here = len(stops(found, pressure))
             count += here if key == "fit_pressure" else 0
             if not here:
@@ -523,8 +555,9 @@ def _refused(study: Study, name: str) -> Iterator[StudyError]:
                     f"pressures within {pressures} MPa; the reference has no force at "
                     f"{pressure:g} MPa between 0 and {100 * FURTHEST:g} %"
                 )
-                at = (*keys, key) if source.has((*keys, key)) else (*keys, "reference")
-                yield source.refuse(at, pressure if at[-1] == key else named, allowed)
+                yield source.refuse((*keys, key), pressure, allowed)
+    if entry.fit_pressure is None:
+        count = sum(len(curve.points) for curve in set_curves(found))
     if 0 < count <= len(entry.fit):
         at = (*keys, "fit") if source.has((*keys, "fit")) else (*keys, "reference")
         allowed = f"fewer values than there are forces; {named} has {count} of them here"

@@ -1,32 +1,46 @@
 """Answer what a muscle does: of pressure, contraction and force two are given.
 
 As ``muscle ask dmsp20 0.25MPa 12%``, ``muscle ask dmsp20 5kg 30mm``, or with --pressure,
---contraction and --force. A mass is the load that hangs from the muscle, a length how much shorter
-it gets. The record of the answer is kept in results/cases; asked again, nothing is solved.
+--contraction (or --stroke) and --force (or --load). A mass is the load that hangs from the muscle,
+a length how much shorter it gets. The record of the answer is kept in results/cases; asked again,
+nothing is solved.
 """
 
 import argparse
 import json
+import re
 
 from workflow.answers import quantities
 from workflow.programs import add_study
 from workflow.study.errors import StudyError
 
+OTHER_NAMES = {
+    quantities.CONTRACTION: ("--stroke",),
+    quantities.FORCE: ("--load",),
+}
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What it is told."""
-    parser.add_argument("muscle", help="its name in the study file")
+    parser._negative_number_matcher = re.compile(r"-\.?\d")  # -2% is no option
+    parser.add_argument("muscle", help="its name in the study file or the library")
     parser.add_argument("quantities", nargs="*", help="two of them, as 0.25MPa 12%% or 2.5bar 20kg")
     for kind in quantities.KINDS:
         example = quantities.EXAMPLES[kind].replace("%", "%%")
-        parser.add_argument(f"--{kind}", help=f"as {example}")
+        parser.add_argument(f"--{kind}", *OTHER_NAMES.get(kind, ()), help=f"as {example}")
     parser.add_argument("--model", help="what computes it; by default membrane")
     parser.add_argument(
-        "--tolerance", type=float, help="share by which it may be off: takes a model for that"
+        "--tolerance", type=_share, help="by which it may be off, as 1%%: takes a model for that"
     )
     parser.add_argument("--variant", default="default", help="effects and numerics of the study")
     parser.add_argument("--json", action="store_true", help="print the answer as JSON")
     add_study(parser)
+
+
+def _share(text: str) -> float:
+    """A share, as 0.01 or 1%."""
+    number = text.removesuffix("%")
+    return float(number) / (1 if number == text else 100)
 
 
 def run(given: argparse.Namespace) -> int:

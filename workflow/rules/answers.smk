@@ -7,6 +7,7 @@
 wildcard_constraints:
     design="|".join(map(re.escape, PLAN.study.design)) or "none",
     map="|".join(map(re.escape, PLAN.study.maps)) or "none",
+    pair="|".join(map(re.escape, PLAN.study.pairs)) or "none",
     scene="|".join(map(re.escape, PLAN.study.scenes)) or "none",
 
 
@@ -90,8 +91,32 @@ rule map_of:
         " --folder {params.folder:q} > {log:q} 2>&1"
 
 
+# Two maps on a pulley -> torque and stiffness of the joint.
+#
+#   in   what the study file says of it and of its maps; workflow/answers/maps/
+#   out  results/pairs/<pair>.csv, .png, .svg, .html
+rule pair_of:
+    input:
+        maps_of_pair,  # what they have solved is in the store
+    output:
+        multiext(f"{RESULTS}/pairs/{{pair}}", ".csv", ".png", ".svg", ".html"),
+    log:
+        f"{RESULTS}/logs/pairs/{{pair}}.log",
+    params:
+        study=lambda _: STUDY,  # as it is, braces and all
+        asked=lambda wildcards: repr(PLAN.study.pairs[wildcards.pair]),
+        code=lambda _: code("workflow.programs.pair"),
+        folder=lambda wildcards, output: str(Path(output[0]).parent),
+    message:
+        "Drawing the pair {wildcards.pair}"
+    shell:
+        "python -m workflow pair {wildcards.pair:q} --study {params.study:q}"
+        " --folder {params.folder:q} > {log:q} 2>&1"
+
+
 rule maps:
     input:
         expand(f"{RESULTS}/maps/{{map}}.nc", map=PLAN.study.maps),
+        expand(f"{RESULTS}/pairs/{{pair}}.csv", pair=PLAN.study.pairs),
     message:
-        "Maps are in results/maps"
+        "Maps are in results/maps, pairs of them in results/pairs"

@@ -141,6 +141,13 @@ def design_digest(wildcards):
     return digest(repr((asked, made_of, sorted(PLAN.study.rubbers.items()))))
 
 
+def maps_of_pair(wildcards):
+    """Maps of the two muscles of a pair."""
+    asked = PLAN.study.pairs[wildcards.pair]
+    names = dict.fromkeys((asked.agonist, asked.antagonist or asked.agonist))
+    return [f"{RESULTS}/maps/{name}.nc" for name in names]
+
+
 def map_digest(wildcards):
     """Digest of what a map takes from the study."""
     asked = PLAN.study.maps[wildcards.map]

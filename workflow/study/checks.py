@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+from geometry.braid import Braid
 from geometry.muscle import AnyBraid, Muscle
 from geometry.refusal import Refusal
 from solver import net
@@ -20,6 +21,7 @@ from workflow.study.schema import (
     HELD_KEY,
     OF_TIME,
     QUANTITIES,
+    SHAPES,
     SHEET,
     SWEPT_KEY,
     TIMED,
@@ -133,10 +135,8 @@ def _frequency(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:
 def _in_time(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
     """A scene in time, whose quantities are those of every state."""
     for quantity in asked.quantities:
-        allowed = _quantity(asked, quantity)
         if quantity in ZERO_FORCE or quantity == DYNAMIC:
             allowed = f"this quantity only out of time, not on a {asked.path} path"
-        if allowed:
             yield source.refuse((*keys, "quantities"), quantity, allowed)
     high = [p for p in asked.pressure or () if p > HIGHEST]
     if high:
@@ -204,9 +204,10 @@ def calibration(study: Study, name: str) -> Iterator[StudyError]:
             yield source.refuse((*keys, "bounds", key), [low, high], allowed)
     positive = True
     for key in ("fit_pressure", "report_pressure"):
-        if min(getattr(entry, key)) <= 0:
+        given = getattr(entry, key)
+        if given is not None and min(given) <= 0:
             positive = False
-            yield source.refuse((*keys, key), list(getattr(entry, key)), "pressures > 0")
+            yield source.refuse((*keys, key), list(given), "pressures > 0")
     if made is None or made.thread is None or not positive:
         return
     if entry.reference is None:
@@ -219,7 +220,8 @@ def _fitted(
     source: Source, keys: Keys, entry: CalibrationEntry, made: StudiedMuscle
 ) -> Iterator[StudyError]:
     """What the rubber does not have, and bounds up to which there is none."""
-    own = [EA, *(each.name for each in made.rubber.parameters() if each.bounds)]
+    shapes = SHAPES if isinstance(made.muscle.braid, Braid) else ()
+    own = [EA, *(each.name for each in made.rubber.parameters() if each.bounds), *shapes]
     layers = source.plain["muscles"][source.owner(entry.muscle, "layers")].get("layers") or ()
     if EA in entry.fit and any({EA, "thread_modulus"} & set(layer) for layer in layers):
         allowed = f"of this muscle, {EA} where it is given once, for the muscle and not for a layer"
@@ -230,7 +232,8 @@ def _fitted(
             allowed = f"of this muscle, {choices(key, own)}"
             yield source.refuse((*keys, "fit"), key, allowed)
             return
-    high = {key: getattr(entry.bounds, key)[1] for key in entry.fit if key != EA}
+    yield from _tolerances(source, keys, entry, made)
+    high = {key: getattr(entry.bounds, key)[1] for key in entry.fit if key not in (EA, *SHAPES)}
     try:
         replace(made.rubber, **high)
     except Refusal as refusal:
@@ -240,6 +243,35 @@ def _fitted(
             yield source.refuse(
                 at, value, f"bounds up to which {refusal.field} is {refusal.allowed}"
             )
+
+
+def _tolerances(
+    source: Source, keys: Keys, entry: CalibrationEntry, made: StudiedMuscle
+) -> Iterator[StudyError]:
+    """How well sizes are known: of those that are fitted, as far as there is such a muscle."""
+    braid, wall = made.muscle.braid, made.muscle.wall_thickness
+    off = {key: getattr(entry.tolerance, key) for key in SHAPES}
+    for key, given in off.items():
+        if given is None and key in entry.fit:
+            yield source.refuse((*keys, "tolerance", key), None, "how well it is known")
+        if given is not None and key not in entry.fit:
+            yield source.refuse((*keys, "tolerance", key), given, f"only where {key} is fitted")
+    if not isinstance(braid, Braid):
+        return
+    inner, outer = ((d - made.muscle.inner_diameter) / 2 for d in braid.layer_diameters)
+    angle, moved = math.degrees(braid.angle), off["layer_radius"] or 0.0
+    rooms = {
+        "angle": min(angle - ANGLES[0], ANGLES[1] - angle),
+        "layer_radius": min(inner, wall - outer),
+        "wall_thickness": wall - outer - moved,
+    }
+    for key, room in rooms.items():
+        if off[key] is not None and off[key] >= room:
+            allowed = f"less than {room:.4g}, with which the layers are still in the wall"
+            if key == "angle":
+                allowed = f"less than {room:.4g} (degree)"
+            yield source.refuse((*keys, "tolerance", key), off[key], allowed)
+            return
 
 
 def proportions(tube: Muscle) -> Iterator[tuple[str, str]]:
@@ -296,6 +328,7 @@ def _written(file: StudyFile) -> Iterator[tuple[Keys, Any]]:
         "calibration": file.calibration,
         "design": file.design,
         "map": file.map,
+        "pair": file.pair,
     }
     for section, entries in sections.items():
         for name, entry in entries.items():

@@ -16,7 +16,14 @@ from solver.numerics import Numerics
 from solver.rubber.rubber_law import RubberLaw
 from workflow.study.installation import Installation
 from workflow.study.limits import Limits
-from workflow.study.schema import CalibrationEntry, DesignEntry, MapEntry, Scene, is_path
+from workflow.study.schema import (
+    CalibrationEntry,
+    DesignEntry,
+    MapEntry,
+    PairEntry,
+    Scene,
+    is_path,
+)
 from workflow.study.source import Source
 
 
@@ -71,6 +78,7 @@ class Study:
     rubbers: dict[str, RubberLaw] = field(default_factory=dict)
     design: dict[str, DesignEntry] = field(default_factory=dict)
     maps: dict[str, MapEntry] = field(default_factory=dict)
+    pairs: dict[str, PairEntry] = field(default_factory=dict)
     wall_time: int  # s, of one case
     memory: int  # MB, of one case
     warnings: tuple[str, ...] = ()  # what may be meant otherwise

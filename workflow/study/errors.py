@@ -95,7 +95,7 @@ def printable(text: str) -> str:
 
 def choices(value: object, allowed: Iterable[str]) -> str:
     """The allowed names, the nearest one first where one is near."""
-    names = list(allowed)
+    names = list(dict.fromkeys(allowed))
     near = difflib.get_close_matches(str(value)[:LONGEST], names[:COMPARED], n=1)
     listed = ", ".join(islice(names, LISTED)) if names else "none"
     if len(names) > LISTED:

@@ -27,12 +27,12 @@ from pydantic_core import PydanticCustomError
 
 from geometry.braid import MOST_LAYERS, Kind
 from geometry.refusal import is_count
-from solver import record
 from solver.effects import EFFECTS, Effects
 from solver.history import Start, Wave
 from solver.load_path import ZERO_FORCE, PathKind
 from solver.models import MODELS
 from solver.numerics import KINDS
+from solver.record import IN_TIME as STATES_IN_TIME
 from solver.record import SLEEVED, VARIABLES
 from solver.rubber import LAWS, default
 from solver.rubber.rubber_law import Parameter
@@ -65,7 +65,7 @@ QUANTITIES = {  # models that can give it
     **{name: tuple(MODELS) for name in ZERO_FORCE},
     SHEET: tuple(m for m in MODELS if {"volume", "stiffness"} <= set(MODELS[m].quantities)),
 }
-TIMED = tuple(record.IN_TIME)  # what only states along a path in time have
+TIMED = tuple(STATES_IN_TIME)  # what only states along a path in time have
 SHOWN = (*VARIABLES, *SLEEVED, *TIMED, "load")  # what a figure can show of a state
 REQUIRED = (  # of a design
     "force",
@@ -325,6 +325,7 @@ BOUNDS = {  # what a calibration can fit, and its bounds: first of the thread, t
     for parameter in law.parameters()
     if parameter.bounds
 }
+SHAPES = ("angle", "wall_thickness", "layer_radius")  # and these, within tolerances
 
 
 class LayerEntry(Entry):
@@ -562,16 +563,25 @@ else:
     )
 
 
+class ToleranceEntry(Entry):
+    """How well sizes are known that a calibration may fit: start plus and minus that."""
+
+    angle: Positive | None = None  # degree
+    wall_thickness: Positive | None = None  # mm
+    layer_radius: Positive | None = None  # mm, of both layers together
+
+
 class CalibrationEntry(Entry):
     """A fit of a muscle to measured forces."""
 
     muscle: Name
     reference: str | None = None  # else the first map of the muscle
     model: _one_of(*FITTED) = "membrane"
-    fit: _some_of(*BOUNDS) = ("thread_stiffness",)
+    fit: _some_of(*BOUNDS, *SHAPES) = ("thread_stiffness",)
     bounds: BoundsEntry = BoundsEntry()
-    fit_pressure: Values = (0.3,)  # MPa
-    report_pressure: Values = (0.2, 0.4, 0.6)  # MPa
+    tolerance: ToleranceEntry = ToleranceEntry()
+    fit_pressure: Values | None = None  # MPa; else all measured points
+    report_pressure: Values | None = None  # MPa
 
 
 class FreeEntry(Entry):
@@ -624,6 +634,24 @@ class MapEntry(Entry):
     seed: Whole = 1
 
 
+def _pairs(value: object) -> tuple[tuple[object, ...], ...]:
+    rows = value if isinstance(value, list) else []
+    if not rows or not all(isinstance(row, list) and len(row) == 2 for row in rows):
+        raise refusal("a list of pairs of pressures: [[agonist, antagonist], ...]")
+    return tuple(map(tuple, rows))
+
+
+class PairEntry(Entry):
+    """Two muscles that pull against each other on a pulley, by their maps."""
+
+    agonist: Name  # maps
+    antagonist: Name | None = None  # else the same
+    radius: Positive  # mm
+    contraction: Number  # of both where the angle is 0
+    angle: Values  # degree
+    pressure: Annotated[tuple[tuple[Number, Number], ...], BeforeValidator(_pairs)]  # MPa
+
+
 class StudyFile(Entry):
     """The whole file."""
 
@@ -636,3 +664,4 @@ class StudyFile(Entry):
     calibration: dict[Name, CalibrationEntry] = {}
     design: dict[Name, DesignEntry] = {}
     map: dict[Name, MapEntry] = {}
+    pair: dict[Name, PairEntry] = {}

@@ -25,7 +25,7 @@ from workflow.study.schema import (
 T = TypeVar("T")
 Keys = tuple[str | int, ...]
 # Sections of entries by name
-NAMED = ("materials", "muscles", "variants", "scenes", "calibration", "design", "map")
+NAMED = ("materials", "muscles", "variants", "scenes", "calibration", "design", "map", "pair")
 
 
 @dataclass(frozen=True)

@@ -143,6 +143,7 @@ def _of(source: Source, findings: Findings | None) -> Study:
         rubbers=rubbers,
         design=file.design,
         maps=file.map,
+        pairs=file.pair,
         wall_time=file.limits.wall_time,
         memory=file.limits.memory,
         warnings=tuple(checks.unusual(source, file, muscles)),
@@ -158,6 +159,7 @@ def _of(source: Source, findings: Findings | None) -> Study:
         },
         design={n: d for n, d in study.design.items() if found.no_more(design.check(study, n))},
         maps={n: m for n, m in study.maps.items() if found.no_more(maps.check(study, n))},
+        pairs={n: p for n, p in study.pairs.items() if found.no_more(maps.check_pair(study, n))},
     )
     if findings is None:
         found.say()

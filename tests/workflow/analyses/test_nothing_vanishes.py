@@ -125,6 +125,8 @@ def calibration(table):
         "two reference at 0.6 MPa",
         "two before membrane at 0.2 MPa (1 of 5)",
         "after, by the solid",
+        "one measured at 0.2 MPa (1 of 5)",
+        "not fitted",
     ]
 
 
@@ -174,6 +176,19 @@ def states_of_calibrations():
     return pd.DataFrame(rows)
 
 
+def residuals_of_calibrations():
+    """Of the same; one point has no state, one is far off."""
+    rows = [
+        {"calibration": name, "held": "isobaric", "set_at": p, "pressure": p, "contraction": eps}
+        | {"fitted": int(p < 0.6), "residual": (-1) ** k * 100 * p * eps}
+        for name in ("one", "two")
+        for p in (0.2, 0.6)
+        for k, eps in enumerate((-0.03, 0.0, 0.05, 0.1, 0.2))
+    ]
+    rows[0]["residual"], rows[7]["residual"] = np.nan, 1e4
+    return pd.DataFrame(rows)
+
+
 @pytest.fixture(scope="module", params=DRAWN)
 def drawn(request, tmp_path_factory):
     """Name, what its words must have, and its figures, of a spoilt table."""
@@ -187,7 +202,10 @@ def drawn(request, tmp_path_factory):
         solved = [made_up(asked) for asked in analysis.cases(name, STUDY)]
         tables = each.tabulated(study, solved)
     else:
-        tables = {"calibration_states": states_of_calibrations()}
+        tables = {
+            "calibration_states": states_of_calibrations(),
+            "calibration_residuals": residuals_of_calibrations(),
+        }
     main = next(iter(tables)) if name != "calibration" else "calibration_states"
     wanted = SPOIL[name](tables[main])
     write_costs(name, solved)

@@ -86,18 +86,18 @@ def test_a_record_of_other_sources_is_solved_again(ask):
 
 
 def test_its_error_covers_the_more_exact_model(ask):
-    """At a state where the caps matter."""
+    """At a state where the caps matter; nearer to rest they matter less than the estimate has."""
     by = {
-        model: ask(pressure="0.3MPa", contraction="10%", model=model)
+        model: ask(pressure="0.3MPa", contraction="14%", model=model)
         for model in ("cylinder", "membrane", "solid")
     }
     for model in ("cylinder", "membrane"):
         off = abs(by[model].force - by["solid"].force)
-        assert off < by[model].error < 12 * off
+        assert off < by[model].error < 3 * off
     assert by["solid"].error < by["membrane"].error
-    asked = ask(pressure="0.3MPa", force="200N")
-    off = abs(asked.contraction - ask(pressure="0.3MPa", force="200N", model="solid").contraction)
-    assert off < asked.error < 12 * off
+    asked = ask(pressure="0.3MPa", force="165N")
+    off = abs(asked.contraction - ask(pressure="0.3MPa", force="165N", model="solid").contraction)
+    assert off < asked.error < 3 * off
 
 
 def test_a_tolerance_takes_a_model(ask):
@@ -127,7 +127,10 @@ def test_where_a_model_has_no_state_the_next_one_answers(ask):
         ({"muscle": "dmsp2", "pressure": 0.3, "contraction": 0.1}, "nearest: dmsp20"),
         ({"pressure": "-1bar", "contraction": "5%"}, "0 to 20 MPa"),
         ({"pressure": "1bar", "contraction": "80%"}, "contraction 80 %"),
+        ({"pressure": "2.5bar", "contraction": "280mm"}, "at rest, where it is 300 mm long"),
         ({"contraction": "10%", "force": "-5N"}, "0 N or more"),
+        ({"pressure": "2.5bar", "contraction": "40%"}, "about 19 % by itself"),
+        ({"pressure": "2.5bar", "force": "100kN"}, "at its length at rest"),
         ({"contraction": "40%", "force": "5N"}, "it gets shorter by 28.2 % at most"),
         ({"pressure": 0.3, "contraction": 0.1, "model": "membran"}, "nearest: membrane"),
         ({"pressure": 0.3, "contraction": 0.1, "tolerance": 2.0}, "between 0 and 1"),

@@ -40,6 +40,10 @@ def test_a_length_is_a_contraction_of_the_muscle(unit):
         ("0.2kN", "force", 200.0),
         ("30mm", "contraction", 0.1),
         ("10percent", "contraction", 0.1),
+        ("2.5 Bar", "pressure", 0.25),
+        ("2.5bars", "pressure", 0.25),
+        ("5Kg", "force", 49.03325),
+        ("20 Newton", "force", 20.0),
     ],
 )
 def test_a_quantity_is_the_decimal_that_was_written(text, kind, value):
@@ -51,6 +55,9 @@ def test_a_quantity_is_the_decimal_that_was_written(text, kind, value):
     ("text", "kind", "said"),
     [
         ("0.25", "", "has no unit"),
+        ("0.12", "", "perhaps 12%"),
+        ("12", "", "perhaps 12%"),
+        ("0,25MPa", "", "perhaps 0.25MPa"),
         ("0,25MPa", "", "the decimal sign is a point"),
         ("fast", "", "is no quantity"),
         ("", "", "is no quantity"),
@@ -82,6 +89,7 @@ def test_words_of_one_quantity_are_joined():
     assert split(["0.25", "MPa", "12%"]) == ["0.25MPa", "12%"]
     assert split(["5", "kg", "3", "cm"]) == ["5kg", "3cm"]
     assert split(["5", "12%"]) == ["5", "12%"]
+    assert split(["2.5", "Bars", "0,5", "kN"]) == ["2.5Bars", "0,5kN"]
 
 
 def test_every_kind_has_units():

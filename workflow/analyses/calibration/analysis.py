@@ -33,7 +33,12 @@ ANALYSIS = Calibrations(
     title="Calibration",
     chapter="2 The verdict",
     target="calibrate",
-    tables={"calibration": "%.6g", "calibration_values": "%.6g", "calibration_states": "%.6g"},
-    figures=("calibration",),
+    tables={
+        "calibration": "%.6g",
+        "calibration_values": "%.6g",
+        "calibration_states": "%.6g",
+        "calibration_residuals": "%.6g",
+    },
+    figures=("calibration", "calibration_residuals"),
     page=("calibration_values", "calibration"),
 )

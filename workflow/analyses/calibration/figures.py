@@ -1,10 +1,13 @@
-"""Forces before and after a calibration, over those it was fitted to and those it was not."""
+"""Forces before and after a calibration, and what is left of the measured ones."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
+from matplotlib import colormaps
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from workflow.analyses import undrawn
 from workflow.analyses.analysis import Solved
@@ -22,12 +25,17 @@ CURVES = {  # values, whether the model of the fit: style
         "label": "after, by the solid",
     },
 }
+LOOKS = {1: {"marker": "o", "zorder": 3}, 0: {"marker": "o", "zorder": 2}}  # fitted or not
+SHADES, LIGHTEST = colormaps["Greys"], 0.3  # by pressure, the lowest not white
 CORNER = {"ha": "right", "va": "top", "fontsize": 7.5}
 
 
 def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """The one figure."""
-    return {"calibration": overview(tables["calibration_states"])}
+    """Curves before and after, and what is left at every measured point."""
+    return {
+        "calibration": overview(tables["calibration_states"]),
+        "calibration_residuals": residuals(tables["calibration_residuals"]),
+    }
 
 
 def overview(states: pd.DataFrame) -> Figure:
@@ -57,6 +65,37 @@ def overview(states: pd.DataFrame) -> Figure:
         ax.set_xlabel("contraction [%]")
     legend(figure, labelled(axes))
     curves.note(figure, undrawn.sentence(_missing(states)))
+    return figure
+
+
+def residuals(points: pd.DataFrame) -> Figure:
+    """Computed minus measured force at every measured point, one panel per calibration."""
+    calibrations = list(points.groupby("calibration", sort=False))
+    figure, axes = panels(FULL, 1.1 + 1.9 * len(calibrations), len(calibrations), 1, gap=(0.5, 0.4))
+    low, high = points["pressure"].min(), points["pressure"].max()
+    for ax, (name, table) in zip(axes[:, 0], calibrations, strict=True):
+        for fitted, look in LOOKS.items():
+            here = table[(table["fitted"] == fitted) & np.isfinite(table["residual"])]
+            shade = LIGHTEST + (1 - LIGHTEST) * (here["pressure"] - low) / max(high - low, 1e-9)
+            colors = SHADES(shade.to_numpy())
+            face = {"facecolors": colors if fitted else "none", "edgecolors": colors}
+            ax.scatter(here["contraction"], here["residual"], s=14, linewidths=0.8, **face, **look)
+        ax.axhline(0, color="black", linewidth=0.7)
+        ax.set_title(name)
+        ax.set_ylabel("computed − measured [N]")
+        percent(ax.xaxis, 0.05)
+    axes[-1, 0].set_xlabel("contraction [%]")
+    dot: dict[str, Any] = {"linestyle": "none", "marker": "o"}
+    grey = [Line2D([], [], color="0.3", mfc=mfc, **dot, label=label)
+            for mfc, label in (("0.3", "fitted"), ("none", "not fitted"))]  # fmt: skip
+    ends = [
+        Line2D([], [], color=SHADES(at), **dot, label=f"{pressure:.4g} MPa")
+        for at, pressure in ((LIGHTEST, low), (1.0, high))
+    ]
+    legend(figure, grey, ends)
+    lost = points.assign(what="measured at", unit=np.where(points["held"] == "isobaric", "MPa", ""))
+    by = ["calibration", "what", "set_at", "unit"]
+    curves.note(figure, undrawn.sentence(undrawn.without_value(lost, "residual", by)))
     return figure
 
 

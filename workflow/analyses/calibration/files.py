@@ -1,10 +1,12 @@
-"""A calibrated muscle as text to paste into a study file."""
+"""A calibrated muscle as text to paste into a study file, or why there is none."""
 
 from collections.abc import Mapping
 
 import pandas as pd
 
+from geometry.braid import Braid
 from workflow.analyses.calibration.calibrate import rounded
+from workflow.analyses.calibration.forward_model import reshaped, shape_of
 from workflow.study.contents import Study
 
 
@@ -15,6 +17,8 @@ def texts(study: Study, tables: Mapping[str, pd.DataFrame]) -> dict[str, str]:
         f"{name}.yaml": text(
             study, str(name), rounded(zip(rows["parameter"], rows["fitted"], strict=True))
         )
+        if rows["usable"].all()
+        else no_muscle(study, str(name), rows)
         for name, rows in fitted
     }
 
@@ -28,10 +32,9 @@ def text(study: Study, name: str, values: Mapping[str, float]) -> str:
         own += f", reference: [{', '.join(base.reference)}]"
     if "thread_stiffness" in values:
         own += f", thread_stiffness: {values['thread_stiffness']:g}"
+    own += _shape(study, name, values)
     lines = [
-        f"# {entry.muscle} fitted to {entry.reference} at "
-        f"{', '.join(f'{p:g}' for p in entry.fit_pressure)} MPa by the model "
-        f"{entry.model}.",
+        _head(study, name),
         "# Paste the lines below each heading under the same heading of a study file.",
     ]
     fitted = {key: value for key, value in values.items() if key in base.rubber.values()}
@@ -44,3 +47,36 @@ def text(study: Study, name: str, values: Mapping[str, float]) -> str:
         lines.append(f"  {name}: {{{law}{said}}}")
     lines += ["muscles:", f"  {name}: {{{own}}}"]
     return "\n".join(lines) + "\n"
+
+
+def no_muscle(study: Study, name: str, rows: pd.DataFrame) -> str:
+    """What is written of a fit that says nothing: why, and no muscle."""
+    lines = [_head(study, name), "# No muscle to paste: the forces do not say what it is."]
+    lines += [
+        f"# {row.parameter}: {row.fitted:.4g} {row.unit}, 95 % from {row.low_95:.3g} to "
+        f"{row.high_95:.3g}; {row.note or 'not to be had without the others'}"
+        for row in rows.itertuples()
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _head(study: Study, name: str) -> str:
+    entry = study.calibration[name]
+    where = "all measured points"
+    if entry.fit_pressure is not None:
+        where = f"{', '.join(f'{p:g}' for p in entry.fit_pressure)} MPa"
+    return f"# {entry.muscle} fitted to {entry.reference} at {where} by the model {entry.model}."
+
+
+def _shape(study: Study, name: str, values: Mapping[str, float]) -> str:
+    """Keys of a muscle whose size was fitted; both layers move together at the same angle."""
+    muscle = study.muscles[study.calibration[name].muscle].muscle
+    said = f", wall_thickness: {values['wall_thickness']:g}" if "wall_thickness" in values else ""
+    if "layer_radius" in values:
+        braid = reshaped(muscle, {"layer_radius": values["layer_radius"]}).braid
+        assert isinstance(braid, Braid)  # see workflow/study/checks.py
+        depths = [(d - muscle.inner_diameter) / 2 for d in braid.layer_diameters]
+        said += f", layer_depths: [{depths[0]:.9g}, {depths[1]:.9g}]"
+    if {"angle", "layer_radius"} & set(values):
+        said += f", angle: {values.get('angle', shape_of(muscle)['angle']):.12g}"
+    return said

@@ -1,4 +1,4 @@
-"""Tables of all calibrations: deviations, fitted values, and the forces behind them."""
+"""Tables of all calibrations: deviations, fitted values, the forces behind them, residuals."""
 
 from collections.abc import Sequence
 
@@ -27,8 +27,10 @@ def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
     states = [
         each.states.assign(calibration=each.name, fitted_by=each.entry.model) for each in found
     ]
+    residuals = [each.residuals.assign(calibration=each.name) for each in found]
     return {
         "calibration": pd.concat([each.deviations for each in found]),
         "calibration_values": pd.concat([calibrate.values(each, study) for each in found]),
         "calibration_states": pd.concat(states),
+        "calibration_residuals": pd.concat(residuals),
     }

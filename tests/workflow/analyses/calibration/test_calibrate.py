@@ -176,8 +176,9 @@ def test_a_muscle_is_fitted_to_its_own_map_unless_another_is_named(study):
 
 def test_a_pressure_without_forces_is_refused(study, tmp_path):
     (tmp_path / "forces.csv").write_text("pressure_MPa,contraction,force_N\n0.2,0,1\n0.2,0.1,1\n")
+    asking = FIT.replace("report_pressure: [0.4]", "fit_pressure: [0.3]")
     with pytest.raises(StudyError, match=r"no force at 0\.3 MPa"):
-        calibrate.calibrate(study(), "mine")
+        calibrate.calibrate(study(asking), "mine")
 
 
 def test_the_study_of_the_paper_asks_for_calibrations():
