@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from solver.status import CaseStatus, Flag, StateStatus
+
 ROOT = Path(__file__).parent.parent
 DOCUMENTS = sorted([*ROOT.glob("*.md"), ROOT / "config/README.md", *(ROOT / "docs").rglob("*.md")])
 SOURCES = (".py", ".idp", ".edp", ".smk", ".md", ".toml", ".sh", ".cff", ".lock")
@@ -67,3 +69,16 @@ def test_theory_names_every_program_of_the_models() -> None:
     programs = {path.relative_to(ROOT) for path in (ROOT / "solver").rglob("*.edp")}
     named = named_files(theory)
     assert {str(p) for p in programs if p.name != "check.edp"} <= named
+
+
+def test_messages_that_are_explained_are_those_of_the_code() -> None:
+    """Every message of the page stands in a source; every status and flag is explained."""
+    text = (ROOT / "docs/troubleshooting.md").read_text(encoding="utf-8")
+    messages = re.findall(r"^\| `([^`]+)` \|", text[: text.index("## What became of")], re.M)
+    assert len(messages) > 10
+    files = [*(ROOT / "workflow").rglob("*.py"), *(ROOT / "workflow/rules").glob("*.smk")]
+    sources = "".join(path.read_text(encoding="utf-8") for path in [*files, ROOT / "setup.sh"])
+    of_others = {"MissingRuleException"}  # Snakemake's
+    assert {each for each in messages if each not in sources} == of_others
+    for kind in (CaseStatus, StateStatus, Flag):
+        assert {word for word in kind if f"`{word}`" not in text} == set()

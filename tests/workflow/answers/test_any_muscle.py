@@ -1,4 +1,4 @@
-"""Three muscles of other kinds, entered as the README says, and what is asked of each.
+"""Three muscles of other kinds, entered as the first steps say, and what is asked of each.
 
 A thin one of silicone and one of latex in sleeves, the second with a gap, a large one of NBR:
 force, threshold, free contraction, what 5 kg do, how near threads and rubber are to their limits.
