@@ -113,7 +113,31 @@ def read(name: str, length: float) -> ForceMap:
     return _map(path.stem, points, [f"{path}: {table.how}", *said], table, lines)
 
 
-def _points(table: Table, length: float) -> tuple[Array, list[int], list[str]]:
+def history(name: str, length: float) -> tuple[Array, Array, list[str]]:
+    """Times [s], points (pressure, contraction, force) and what was read, of a file in time.
+
+    Raises
+    ------
+    StudyError
+        As ``read``; or if there is no column of time, or its times do not rise.
+    """
+    path = Path(name)
+    if not user_file.text_of(path, measured.LARGEST).strip():
+        raise StudyError(f"{path}: there is no force in it")
+    table = measured.read(path, headers.OF_MUSCLES)
+    if "time" not in table.columns:
+        raise table.refuse(_missing(table, "time"))
+    points, lines, said = _points(table, length, also=("time",))
+    times = table.numbers("time")
+    times = times[np.isin(table.lines, lines)]
+    if not np.isfinite(times).all() or not (np.diff(times) > 0).all():
+        raise table.refuse("its times do not rise from row to row")
+    return times, points, [f"{path}: {table.how}", table.said("time", times), *said]
+
+
+def _points(
+    table: Table, length: float, also: tuple[str, ...] = ()
+) -> tuple[Array, list[int], list[str]]:
     """Pressure, contraction and force of the rows that are used, their lines, and what was read."""
     for quantity in ("pressure", "force"):
         if quantity not in table.columns:
@@ -123,7 +147,8 @@ def _points(table: Table, length: float) -> tuple[Array, list[int], list[str]]:
         raise table.refuse(_missing(table, "contraction", ", stroke or length"))
     values = {q: table.numbers(q) for q in ("pressure", "force", place)}
     said = [table.said(q, values[q]) for q in values]
-    others = [table.columns[q].name for q in table.columns if q not in (*values, "suspect")]
+    known = (*values, *also, "suspect")
+    others = [table.columns[q].name for q in table.columns if q not in known]
     unused = [*others, *map(shown, table.unused)]
     if unused:
         said.append(f"not used: {', '.join(unused)}")

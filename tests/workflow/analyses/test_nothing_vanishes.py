@@ -138,7 +138,7 @@ def time(table):
     return [
         "pressure 0.5 MPa",
         "1 %/s",
-        "sleeve, contacts 0.2 mm",
+        "same tube, sleeve, contacts 0.2 mm",
         "measured, another muscle",
         "three elements",
         "0.01 Hz",

@@ -1,4 +1,4 @@
-"""The analysis of time: its cases, the three elements, the formula of a sleeve, its tables."""
+"""The analysis of time: its cases, the three elements, the sleeve, its tables."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver import net
-from workflow.analyses.time import cases, sleeve, table
+from workflow.analyses.time import cases, table
 from workflow.analyses.time.three_elements import ThreeElements
 from workflow.study.study import load
 
@@ -24,7 +24,8 @@ def test_cases_are_of_the_muscle_of_the_paper_and_each_of_its_own(study):
     asked = cases.cases(study)
     assert len({one.case.key for one in asked}) == len(asked)
     for one in asked:
-        assert one.case.muscle == study.muscles["dmsp20"].muscle
+        tube = study.muscles["dmsp20"].muscle
+        assert one.case.muscle == (cases.sleeved(tube) if one.tags["set"] == "sleeve" else tube)
         assert one.case.rubber == study.muscles["dmsp20"].rubber
 
 
@@ -41,21 +42,27 @@ def test_three_elements_are_found_again(study):
     assert found.width(1.0) == pytest.approx(80)
 
 
-def test_half_the_width_of_a_sleeve(study):
-    """2.1 to 4.2 N at 0.3 MPa, 10 %."""
+def test_the_sleeve_has_the_threads_of_the_muscle(study):
     muscle = study.muscles["dmsp20"].muscle
-    found = [sleeve.width(muscle, 0.3, 0.1, 15.05, contact) / 2 for contact in sleeve.CONTACTS]
-    assert found == pytest.approx([2.1, 4.2], abs=0.05)
+    found = cases.sleeved(muscle)
+    assert found.braid.layer_angles[0] == pytest.approx(muscle.braid.angle)
+    assert found.braid.threads == (muscle.braid.threads,)
+    rubbing = [one.case for one in cases.cases(study) if one.tags["set"] == "sleeve"]
+    assert {case.friction.contact for case in rubbing} == set(cases.CONTACTS)
+    assert not any(case.remembers for case in rubbing)
 
 
 def test_tables(study):
     tables = table.tables(study, [made_up(one) for one in cases.cases(study)])
     rows = tables["time"]
-    loops = rows[rows["set"].isin(["rate", "pressure"])]
+    loops = rows[rows["set"].isin(["rate", "pressure", "sleeve"])]
     assert loops["width"].to_list() == pytest.approx([8.0] * len(loops), abs=0.5)
     by_rate = rows[rows["set"] == "rate"]["three elements, width [N]"].to_numpy()
     np.testing.assert_allclose(by_rate[1:] / by_rate[:-1], 10)  # a damper
-    assert set(tables["time_curves"]["set"]) == {"rate", "pressure", "frequency", "step"}
+    assert set(tables["time_curves"]["set"]) == {
+        *("rate", "pressure", "frequency", "step"),
+        "sleeve",
+    }
     assert len(tables["time_vibrations"]) == 3 * len(cases.VIBRATIONS)
 
 

@@ -2,12 +2,18 @@
 
 The rubber has an assumed memory, equal relaxation in every decade from 1 ms to 1000 s, by 6 % of
 the long-term stiffness each: no relaxation test of the rubber of a muscle is known with numbers.
-Loops are the third of three, from rest at their first state.
+Loops are the third of three, from rest at their first state. Beside it stands the same muscle with
+its threads in a sleeve, whose rubber has no memory and whose crossings rub.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
 
+from geometry.braid import LayeredBraid
+from geometry.muscle import Muscle
 from solver.case import Case
+from solver.friction import Friction
 from solver.history import History, Valve, Wave, sampled
 from solver.load_path import LoadPath, PathKind
 from solver.memory import Memory
@@ -23,6 +29,7 @@ PRESSURES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)  # MPa
 LOAD, HIGHEST = 200.0, 0.4  # N, MPa, of the loops of contraction
 FREQUENCIES = (0.01, 0.1, 1.0, 10.0)  # Hz
 SAMPLES, CYCLES = 100, 3
+FRICTION, CONTACTS = 0.2, (0.2, 0.4)  # 1, mm: a guess for a braid of nylon
 MASS, STEP, DURATION = 5.0, 0.004, 0.8  # kg, s, s
 GRAVITY = 9.80665  # m/s2
 VALVE = Valve(conductance=1e7, critical_ratio=0.3)  # 1 dm3/(s bar)
@@ -31,16 +38,18 @@ VIBRATIONS = tuple(float(f"{10 ** (k / 4):.4g}") for k in range(-8, 9))  # Hz
 
 def cases(study: Study) -> list[AnalysisCase]:
     """Loops of force by rate and pressure, of contraction by frequency; a step; vibrations."""
-    return [*_loops(study), *_steps(study), *_vibrations(study)]
+    return [*_loops(study), *_sleeves(study), *_steps(study), *_vibrations(study)]
 
 
-def _case(study: Study, model: str, path: LoadPath, *, memory: bool = True, **more: object) -> Case:
-    return study.muscles[MUSCLE].case(path, model, memory=MEMORY if memory else None, **more)
+def _case(study: Study, model: str, path: LoadPath, *, memory: bool = True, **more: Any) -> Case:
+    studied = study.muscles[MUSCLE]
+    studied = replace(studied, muscle=more.pop("muscle", studied.muscle))
+    return studied.case(path, model, memory=MEMORY if memory else None, **more)
 
 
-def cycle(kind: PathKind, held: float, end: float, period: float) -> LoadPath:
+def cycle(kind: PathKind, held: float, end: float, period: float, count: int = CYCLES) -> LoadPath:
     """A triangle from 0 and back, several times."""
-    times, stops = sampled(Wave.TRIANGLE, 0.0, end, period, CYCLES, SAMPLES)
+    times, stops = sampled(Wave.TRIANGLE, 0.0, end, period, count, SAMPLES)
     return LoadPath(kind=kind, held=held, stops=stops, history=History(times=times, period=period))
 
 
@@ -61,6 +70,34 @@ def _loops(study: Study) -> Iterator[AnalysisCase]:
         yield AnalysisCase(_case(study, "membrane", path), f"{frequency:g} Hz", tags)
 
 
+def sleeved(muscle: Muscle) -> Muscle:
+    """The same tube with threads as many and as inclined in a sleeve on its outer surface."""
+    assert muscle.braid is not None
+    around = muscle.outer_radius / (muscle.braid.mean_diameter / 2)
+    braid = LayeredBraid(
+        kinds=("sleeve",),
+        layer_diameters=(2 * muscle.outer_radius,),
+        leads=(muscle.braid.lead * around,),
+        threads=(int(muscle.braid.threads_each),),
+        senses=(0,),
+        stiffness_shares=(1.0,),
+    )
+    return replace(muscle, braid=braid)
+
+
+def _sleeves(study: Study) -> Iterator[AnalysisCase]:
+    """Loops of force of a sleeve whose crossings rub; no rate enters."""
+    muscle = sleeved(study.muscles[MUSCLE].muscle)
+    for contact in CONTACTS:
+        friction = Friction(coefficient=FRICTION, contact=contact)
+        for pressure in PRESSURES:
+            path = cycle(PathKind.ISOBARIC, pressure, FURTHEST, 2 * FURTHEST / RATES[1], 2)
+            case = _case(study, "cylinder", path, memory=False, friction=friction, muscle=muscle)
+            tags: dict[str, str | float] = {"set": "sleeve", "pressure": pressure}
+            tags |= {"rate": RATES[1], "contact": contact}
+            yield AnalysisCase(case, f"{pressure:g} MPa, contacts of {contact:g} mm", tags)
+
+
 def _steps(study: Study) -> Iterator[AnalysisCase]:
     """A hanging mass, whose valve opens."""
     times = tuple(round(STEP * k, 9) for k in range(round(DURATION / STEP) + 1))
@@ -75,6 +112,6 @@ def _steps(study: Study) -> Iterator[AnalysisCase]:
 def _vibrations(study: Study) -> Iterator[AnalysisCase]:
     for pressure in (0.2, 0.3, 0.4):
         path = LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=(AT,))
-        case = _case(study, "cylinder", path, frequencies=VIBRATIONS)
+        case = _case(study, "membrane", path, frequencies=VIBRATIONS)
         tags: dict[str, str | float] = {"set": "vibration", "pressure": pressure}
         yield AnalysisCase(case, f"{pressure:g} MPa", tags)

@@ -8,14 +8,14 @@ from matplotlib.figure import Figure
 
 from workflow.analyses import undrawn
 from workflow.analyses.analysis import Solved
-from workflow.analyses.time import sleeve
-from workflow.analyses.time.cases import AT, FREQUENCIES, RATES
-from workflow.analyses.time.table import SLEEVES, widths
+from workflow.analyses.time.cases import AT, CONTACTS, FREQUENCIES, RATES
+from workflow.analyses.time.table import widths
 from workflow.figures import curves, style
 
 GAP = (0.66, 0.66)
 LINES = ("-", (0, (5, 2)), (0, (1, 1)))  # of rates, which lie on each other
 ELEMENTS = {"color": "0.45", "linestyle": (0, (4, 2)), "linewidth": 1.1}
+MEASURED = 12.7  # N, half width of a 10 mm muscle (Hunt 2017), 15.6 kPa
 FAR = 20.0  # N: widths of the three elements beyond it are said, not drawn
 CONTRACTION, PRESSURE, FORCE = "contraction [1]", "pressure [MPa]", "force [N]"
 
@@ -54,17 +54,17 @@ def loops(table: pd.DataFrame, found: pd.DataFrame) -> Figure:
         style.percent(ax.xaxis)
     rows = table[table["set"] == "pressure"].sort_values(PRESSURE)
     width.plot(rows[PRESSURE], rows["width"], label="rubber", color="black", marker="o")
-    for k, name in enumerate(SLEEVES):
+    for k, contact in enumerate(CONTACTS):
+        own = (table["set"] == "sleeve") & (table["contact [mm]"] == contact)
+        rubs = table[own].sort_values(PRESSURE)
         look = {"color": "#0072b2", "linestyle": ("-", (0, (1, 1)))[k], "marker": ""}
-        contact = sleeve.CONTACTS[k]
-        width.plot(rows[PRESSURE], rows[name], label=f"sleeve, contacts {contact:g} mm", **look)
-    width.axhline(
-        2 * sleeve.MEASURED, color="#d55e00", linewidth=1, label="measured, another muscle"
-    )
+        label = f"same tube, sleeve, contacts {contact:g} mm"
+        width.plot(rubs[PRESSURE], rubs["width"], label=label, **look)
+    width.axhline(2 * MEASURED, color="#d55e00", linewidth=1, label="measured, another muscle")
     width.set(xlabel="pressure [MPa]", ylabel="width of the loop [N]")
     width.set_title(f"width at {100 * AT:g} %")
     style.legend(figure, style.labelled(axes[:, :2]), style.labelled(axes[:, 2:]))
-    drawn = table[table["set"].isin(["rate", "pressure"])]
+    drawn = table[table["set"].isin(["rate", "pressure", "sleeve"])]
     far = drawn["three elements, width [N]"] >= FAR
     beyond = sorted(set(drawn.loc[far & (drawn["set"] == "rate"), "label"]))
     cut = f"Three elements, fitted at {100 * RATES[1]:g} %/s, are beyond {FAR:g} N at "

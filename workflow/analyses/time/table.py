@@ -10,14 +10,18 @@ from numpy.typing import NDArray
 from solver import balance
 from solver.record import DYNAMIC
 from workflow.analyses.analysis import Solved
-from workflow.analyses.time import sleeve
-from workflow.analyses.time.cases import AT, FURTHEST, MUSCLE, PRESSURE, RATES, SAMPLES
+from workflow.analyses.time.cases import (
+    AT,
+    FURTHEST,
+    MUSCLE,
+    PRESSURE,
+    RATES,
+    SAMPLES,
+)
 from workflow.analyses.time.three_elements import ThreeElements
 from workflow.study.contents import Study
 
 Array = NDArray[np.float64]
-TAGS = ("set", "pressure", "rate", "frequency")
-SLEEVES = tuple(f"sleeve, contacts of {contact:g} mm [N]" for contact in sleeve.CONTACTS)
 
 
 def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
@@ -71,17 +75,13 @@ def _row(study: Study, one: Solved, elements: ThreeElements) -> dict[str, Any]:
     row |= {"pressure [MPa]": tags["pressure"], "rate [1/s]": tags.get("rate", np.nan)}
     row |= {"frequency [Hz]": tags.get("frequency", np.nan), "width": np.nan, "unit": ""}
     row |= {"mean": np.nan, "dissipated [N mm]": np.nan, "unbalanced [1]": np.nan}
-    row |= {"three elements, width [N]": np.nan, **dict.fromkeys(SLEEVES, np.nan)}
+    row |= {"contact [mm]": tags.get("contact", np.nan), "three elements, width [N]": np.nan}
     row |= {"status": one.solution.status.value}
-    if tags["set"] in ("rate", "pressure"):
+    if tags["set"] in ("rate", "pressure", "sleeve"):
         there, back = branches(one, "force", "contraction", AT)
         row |= {"width": back - there, "mean": (there + back) / 2, "unit": "N"}
+    if tags["set"] in ("rate", "pressure"):
         row["three elements, width [N]"] = elements.width(float(tags["rate"]))
-    if tags["set"] == "pressure":
-        inner = branches(one, "inner_diameter_inflated", "contraction", AT)[0] / 2
-        for name, contact in zip(SLEEVES, sleeve.CONTACTS, strict=True):
-            pressure = float(tags["pressure"])
-            row[name] = sleeve.width(case.muscle, pressure, AT, inner, contact)
     if tags["set"] == "frequency":
         there, back = branches(one, "contraction", "pressure", PRESSURE)
         row |= {"width": back - there, "mean": (there + back) / 2, "unit": "1"}
