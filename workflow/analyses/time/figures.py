@@ -57,7 +57,7 @@ def loops(table: pd.DataFrame, found: pd.DataFrame) -> Figure:
     for k, contact in enumerate(CONTACTS):
         own = (table["set"] == "sleeve") & (table["contact [mm]"] == contact)
         rubs = table[own].sort_values(PRESSURE)
-        look = {"color": "#0072b2", "linestyle": ("-", (0, (1, 1)))[k], "marker": ""}
+        look = style.series(3) | {"linestyle": ("-", (0, (1, 1)))[k], "marker": ""}
         label = f"same tube, sleeve, contacts {contact:g} mm"
         width.plot(rubs[PRESSURE], rubs["width"], label=label, **look)
     width.axhline(2 * MEASURED, color="#d55e00", linewidth=1, label="measured, another muscle")
