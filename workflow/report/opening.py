@@ -43,6 +43,7 @@ STYLE = """
 .opening tr.partly td:last-child { background: #ea02; }
 .opening tr.not-reproduced td:last-child { background: #d422; }
 .opening code { font-size: .92em }
+.opening code::before, .opening code::after { content: none }
 """
 
 
@@ -174,7 +175,7 @@ def _named(name: str, fitting: Sequence[Analysis]) -> Analysis | None:
 def _command(name: str, fitting: Sequence[Analysis]) -> str:
     each = _named(name, fitting)
     assert each is not None
-    return f"<code>snakemake --cores 2 {each.target or each.name}</code>"
+    return f"<code>.venv/bin/snakemake --cores 2 {each.target or each.name}</code>"
 
 
 def _plain(words: object) -> str:

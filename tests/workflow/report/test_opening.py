@@ -36,7 +36,7 @@ def results(tmp_path):
 def test_before_the_analyses_it_says_how_to_run_them(results):
     text = opening.text(results, list(ANALYSES.values()))
     for each in ANALYSES.values():
-        assert f"<code>snakemake --cores 2 {each.target or each.name}</code>" in text
+        assert f"<code>.venv/bin/snakemake --cores 2 {each.target or each.name}</code>" in text
     assert "<table>" not in text
 
 

@@ -27,10 +27,10 @@ def figures() -> str:
 def _entries(results: Path) -> Iterator[str]:
     study = ROOT / DEFAULT
     for scene in read(study).study.scenes:
-        yield _entry(results, scene, "snakemake --cores 2", pages.caption_of(scene))
+        yield _entry(results, scene, ".venv/bin/snakemake --cores 2", pages.caption_of(scene))
     for each in ANALYSES.values():
         for picture in each.figures:
-            command = f"snakemake --cores 2 {each.target or each.name}"
+            command = f".venv/bin/snakemake --cores 2 {each.target or each.name}"
             yield _entry(results, picture, command, each.caption)
 
 
