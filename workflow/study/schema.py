@@ -364,6 +364,10 @@ SWEPT = {  # keys of a muscle that a sweep may have, and what stands for them in
     "thread_stiffness": "ea",
     "material": "",
 }
+NOT_SWEPT = {  # keys of a muscle that one might look for there
+    "layers": "layers beside the sweep, for all its muscles; others in an entry of their own",
+    "cap_length": "cap_length beside the sweep, for all its muscles, or in a table of muscles",
+}
 _OF_SWEEP = {"threads": Annotated[tuple[int, ...], BeforeValidator(_counts)], "material": Names}
 SweepEntry = create_model(
     "SweepEntry",

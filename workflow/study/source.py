@@ -17,6 +17,7 @@ from workflow.study.schema import (
     LONGEST_NAME,
     MATERIALS,
     NAME_RULE,
+    NOT_SWEPT,
     Entry,
     StudyFile,
     law_of,
@@ -239,6 +240,8 @@ class Source:
             if keys[-1] in INEXPRESSIBLE:
                 return self.refuse(keys, error["input"], INEXPRESSIBLE[str(keys[-1])])
             allowed = choices(keys[-1], self._known_keys(keys[:-1]))
+            if keys[-2:-1] == ("sweep",) and keys[-1] in NOT_SWEPT:
+                allowed = NOT_SWEPT[str(keys[-1])]
             return StudyError(
                 f"{self.place(keys)} is no key here\n  allowed: {allowed}", line, keys
             )

@@ -8,7 +8,7 @@ from workflow.data.states import OF_MUSCLE
 from workflow.plan import plan
 from workflow.study import sweep
 from workflow.study.errors import StudyError
-from workflow.study.schema import SWEPT, MuscleEntry
+from workflow.study.schema import NOT_SWEPT, SWEPT, MuscleEntry
 from workflow.study.study import load
 
 from .test_study import STUDY
@@ -173,6 +173,21 @@ def test_names_are_free_and_not_too_long(refused):
     long = refused(study(SWEEP, SCENES).replace("many", name))
     assert f"muscles.{name} = " in long
     assert "at most 64" in long
+
+
+@pytest.mark.parametrize(("key", "said"), NOT_SWEPT.items())
+def test_what_is_not_swept_says_where_it_goes(refused, key, said):
+    message = refused(study(f"  many: {{base: one, sweep: {{{key}: [1, 2]}}}}\n"))
+    assert f"muscles.many.sweep.{key} is no key here" in message
+    assert said in message
+
+
+def test_layers_and_cap_length_stand_beside_a_sweep(planned):
+    layer = "{kind: embedded, depth: 0.3, sense: both, lead: 144, threads: 60}"
+    entry = f"{{base: one, cap_length: 5, layers: [{layer}], sweep: {{length: [200, 300]}}}}"
+    found = planned(study(f"  many: {entry}\n")).study.muscles
+    swept = [m.muscle for name, m in found.items() if name.startswith("many-")]
+    assert [(m.length, m.cap_length, len(m.layers)) for m in swept] == [(200, 5, 2), (300, 5, 2)]
 
 
 @pytest.mark.parametrize("entry", ["{base: many}", "{base: one, angle_of: many}"])
