@@ -16,7 +16,7 @@ from pathlib import Path
 
 from geometry.attempt import OWN_SIGNALS
 from solver import files
-from solver.process import Family
+from solver.process import Family, wait
 
 PATH = Path(__file__).parent / "path"  # solution control, which every program includes
 DEBIAN_PLUGINS = Path("/usr/lib/freefem++")  # where Debian puts them; its program looks elsewhere
@@ -216,7 +216,7 @@ def run(
             lambda: _limit(limits),
         )
         try:
-            status = process.wait(limits.wall_time)
+            status = wait(process, limits.wall_time)
         except subprocess.TimeoutExpired as late:
             raise OutOfTime(f"stopped after {limits.wall_time:g} s, the limit") from late
         finally:
