@@ -49,6 +49,18 @@ def test_hypercube_is_the_same_every_time_and_large_enough(asked):
     assert len(of(asked, set="hypercube", model="solid", mesh=2)) == 20
 
 
+def test_twenty_random_muscles_go_through_a_cycle(asked):
+    """To half of what the net could contract by, and back; nothing else has a memory."""
+    cycles = of(asked, set="cycle")
+    assert len(cycles) == 20
+    for one in cycles:
+        path, braid = one.case.path, one.case.muscle.braid
+        assert one.case.remembers
+        assert path.stops[0] == path.stops[-1] == 0
+        assert 0.02 < max(path.stops) < 1 - 1 / (np.sqrt(3) * np.cos(braid.angle))
+    assert not any(one.case.remembers for one in asked if one not in cycles)
+
+
 def test_hypercube_fills_its_limits(asked):
     muscles = [a.case.muscle for a in of(asked, set="hypercube", model="solid", mesh=1)]
     for values, (low, high) in (

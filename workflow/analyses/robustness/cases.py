@@ -3,11 +3,11 @@
 Named cases run from -5 to 25 % of contraction in steps of 1 %. They end at 25 %, or at a limit that
 the three meshes agree on. The hypercube spans what may be built; a sample that cannot be built
 (threads closer than their diameter) is drawn again. A tenth of it is solved again on a mesh twice
-as fine with steps half as long.
+as fine with steps half as long, and twenty go through a cycle, their rubber with a memory.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,8 +18,10 @@ from geometry.muscle import Braid, Muscle
 from solver import net, rubber
 from solver.case import Case
 from solver.effects import Effects, End, ThreadLaw
+from solver.history import History, Wave, sampled
 from solver.load_path import LoadPath, PathKind
 from solver.material import Thread
+from solver.memory import Memory
 from solver.numerics import Numerics, Spread
 from solver.rubber.rubber_law import RubberLaw
 from workflow.analyses.analysis import AnalysisCase
@@ -56,12 +58,14 @@ LIMITS = {  # of the hypercube: name -> (low, high, logarithmic)
     "pressure": (0.01, 0.8, False),  # MPa
     "path": (0, 5, False),  # 0 to 3 isobaric, to 4 isometric, to 5 isotonic
 }
+MEMORY, PERIOD, CYCLE_STEPS = Memory.flat(0.06, 1e-3, 1e3), 4.0, 40  # of cycles; s
 LAYERS = (0.15, 0.45)  # depth of the layers, shares of the wall
 
 
 def cases(study: Study) -> list[AnalysisCase]:
-    """Named cases by mesh, their membranes, the hypercube and its repeated tenth."""
-    return [*_named(study), *_hypercube()[0]]
+    """Named cases by mesh, their membranes, the hypercube, its repeated tenth, and cycles."""
+    samples = _hypercube()[0]
+    return [*_named(study), *samples, *_cycles(samples)]
 
 
 @dataclass(frozen=True)
@@ -160,6 +164,23 @@ def _hypercube() -> tuple[list[AnalysisCase], int]:
             finer = replace(case, path=_halved(case.path), numerics=twice)
             found.append(AnalysisCase(finer, f"sample {number}, finer", tags | {"mesh": 2}))
     return found, redrawn
+
+
+def _cycles(samples: Sequence[AnalysisCase]) -> Iterator[AnalysisCase]:
+    """Every tenth sample at its pressure, to half the contraction of its net and back, in time."""
+    for number in range(0, SAMPLES, REPEATED):
+        tags: dict[str, str | float] = {"set": "cycle", "name": f"{number}", "mesh": 1}
+        case = next(one.case for one in samples if one.label == f"sample {number}, membrane")
+        path = case.path
+        pressure = path.held if path.kind is PathKind.ISOBARIC else path.stops[-1]
+        braid = case.muscle.braid
+        assert braid is not None
+        end = (1 - 1 / (math.sqrt(3) * math.cos(braid.angle))) / 2
+        times, stops = sampled(Wave.TRIANGLE, 0.0, round(end, 4), PERIOD, 1, CYCLE_STEPS)
+        history = History(times=times, period=PERIOD)
+        cycle = LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=stops, history=history)
+        case = replace(case, path=cycle, memory=MEMORY)
+        yield AnalysisCase(case, f"sample {number}, cycle", tags)
 
 
 def _sample(point: np.ndarray) -> Case | None:

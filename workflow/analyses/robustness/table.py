@@ -47,7 +47,7 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
     finest = _finest(solved)
     rows = []
     for one in solved:
-        row = _row(one) | _agreement(one, finest[_muscle(one)])
+        row = _row(one) | _agreement(one, finest.get(_muscle(one), one))  # cycles have no solid
         rows.append(row | {"cause": _cause(row)})
     return pd.DataFrame(rows)
 
