@@ -128,8 +128,15 @@ def test_formulas_are_drawn_by_the_browser(site, formula):
     assert "MathJax" not in theory
 
 
-@pytest.mark.parametrize("page", ["index", "theory", "gallery", "reference/keys"])
-@pytest.mark.parametrize(("scheme", "width"), [("light", 1300), ("dark", 390)])
+@pytest.mark.parametrize(
+    ("page", "scheme", "width"),
+    [
+        ("index", "light", 1300),
+        ("theory", "dark", 390),
+        ("gallery", "light", 390),
+        ("reference/keys", "dark", 1300),
+    ],
+)
 def test_pages_open_without_errors(browser, site, page, scheme, width):  # noqa: F811
     context = browser.new_context(
         viewport={"width": width, "height": 800}, color_scheme=scheme, offline=True
