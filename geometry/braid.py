@@ -38,6 +38,7 @@ class Layer:
     threads : their number
     sense : 1 clockwise, -1 counter-clockwise
     share : of the stiffness EA of the muscle's thread
+    crimp : radius of the collar that holds a sleeve; 0 where that is as wide as the tube [mm]
     """
 
     kind: Kind
@@ -47,6 +48,7 @@ class Layer:
     threads: int
     sense: int
     share: float = 1.0
+    crimp: float = 0.0
 
     @property
     def tangent(self) -> float:
@@ -148,6 +150,8 @@ class LayeredBraid:
     threads : in each family of a layer
     senses : 1 clockwise, -1 counter-clockwise, 0 a family of each
     stiffness_shares : EA of a thread, as a share of that of the muscle's thread
+    crimp_radii : of the collar that holds a sleeve, 0 of others, which are held as wide as the tube
+        or lie in the wall; none where all are so
 
     Raises
     ------
@@ -161,6 +165,7 @@ class LayeredBraid:
     threads: tuple[int, ...] = field(metadata=ONE)
     senses: tuple[int, ...] = field(metadata=ONE)
     stiffness_shares: tuple[float, ...] = field(metadata=ONE)
+    crimp_radii: tuple[float, ...] = field(default=(), metadata=MM)
 
     def __post_init__(self) -> None:
         rules = {
@@ -178,6 +183,21 @@ class LayeredBraid:
                 raise UnbuildableMuscle(name, values, f"one value a layer, of 1 to {MOST_LAYERS}")
             if not all(map(is_right, values)):
                 raise UnbuildableMuscle(name, values, allowed)
+        self._check_crimps()
+
+    def _check_crimps(self) -> None:
+        """Refuse collars that hold no sleeve, or one that is narrower."""
+        crimps = self.crimp_radii
+        if crimps == ():
+            return
+        allowed = "none, or one value a layer, 0 or of one sleeve at most its radius (mm)"
+        right = isinstance(crimps, tuple) and len(crimps) == len(self.kinds)
+        right = right and all(is_number(value) and value >= 0 for value in crimps)
+        held = [k for k, value in enumerate(crimps) if value > 0] if right else []
+        if len(held) != 1 or self.kinds[held[0]] != Kind.SLEEVE:
+            raise UnbuildableMuscle("crimp_radii", crimps, allowed)
+        if crimps[held[0]] > self.layer_diameters[held[0]] / 2 * (1 + SAME):
+            raise UnbuildableMuscle("crimp_radii", crimps, allowed)
 
     @property
     def layer_angles(self) -> tuple[float, ...]:
@@ -240,14 +260,16 @@ class LayeredBraid:
                 threads=threads,
                 sense=each,
                 share=share,
+                crimp=crimp,
             )
-            for kind, diameter, lead, threads, sense, share in zip(
+            for kind, diameter, lead, threads, sense, share, crimp in zip(
                 self.kinds,
                 self.layer_diameters,
                 self.leads,
                 self.threads,
                 self.senses,
                 self.stiffness_shares,
+                self.crimp_radii or (0.0,) * len(self.kinds),
                 strict=True,
             )
             for each in ((sense,) if sense else (1, -1))
@@ -277,6 +299,8 @@ def _are_partners(one: Layer, other: Layer) -> bool:
         return False
     same_lead = _are_same((one.lead, other.lead))
     same_angle = _are_same((one.tangent, other.tangent))
+    if one.crimp != other.crimp:
+        return False
     alike = same_lead and same_angle if one.kind is Kind.SLEEVE else same_lead or same_angle
     return alike and _are_same((one.share, other.share))
 

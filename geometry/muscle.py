@@ -85,6 +85,8 @@ class Muscle:
         if self.braid is not None:
             lists = {k: list(v) for k, v in values["braid"].items() if isinstance(v, tuple)}
             values["braid"] |= lists
+            if values["braid"].get("crimp_radii") == []:
+                del values["braid"]["crimp_radii"]
         return values
 
     @classmethod

@@ -138,6 +138,9 @@ class Case:
         if self.effects.stretch is Stretch.RIGID:
             allowed = "elastic where a sleeve has friction"
             raise UnsolvableCase("stretch", self.effects.stretch, allowed)
+        if self.hangs:
+            allowed = "none of a sleeve that hangs from a collar of its own"
+            raise UnsolvableCase("friction", plain(self.friction), allowed)
 
     def _check_frequencies(self) -> None:
         """Refuse vibrations that cannot be, or of a model that has none."""
@@ -174,6 +177,15 @@ class Case:
         return self.friction is not None and self.path.history is not None
 
     @property
+    def hangs(self) -> bool:
+        """Whether a sleeve is crimped on a collar of its own, and the model has ends."""
+        return any(layer.crimp for layer in self.muscle.layers) and self._has_ends
+
+    @property
+    def _has_ends(self) -> bool:
+        return "end_caps" in MODELS[self.model].effects
+
+    @property
     def vibrates(self) -> bool:
         """Whether it matters for vibrations at the states of the path."""
         return self.frequencies != ()
@@ -189,6 +201,8 @@ class Case:
         parts, braided = MODELS[self.model].parts, self.muscle.braid is not None
         if not self.clamped:
             del muscle["cap_length"]
+        if braided and not self._has_ends:
+            muscle["braid"].pop("crimp_radii", None)
         for name in MODELS[self.model].unread:
             del muscle[name]
         if "effects" in parts:

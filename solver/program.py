@@ -32,6 +32,7 @@ def composition(case: Case) -> str:
     files = [f"threads_{threads}.idp", *MODELS[case.model].composition(case)]
     macros = {"remembers": case.remembers or case.vibrates, "vibrates": case.vibrates}
     macros["rubs"] = case.rubs
+    macros["hangs"] = case.hangs
     said = "".join(f"macro {name}() // EOM\n" for name, is_so in macros.items() if is_so)
     return said + "".join(f'include "{name}"\n' for name in files)
 
@@ -101,6 +102,7 @@ def _layers(muscle: Muscle, thread: Thread) -> list[tuple[float, ...]]:
             Boundary.OUTER.value
             if layer.kind is Kind.SLEEVE
             else Boundary.LAYER_1.value + muscle.layer_radii.index(layer.radius),
+            layer.crimp,
         )
         for layer, count in found.items()
     ]

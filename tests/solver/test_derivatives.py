@@ -102,6 +102,24 @@ def test_bare_cell(make_case, bare_tube, errors):
     check(found, tolerance=1e-6)
 
 
+def test_sleeve_that_hangs_from_its_collar(make_case, errors):
+    """Off the wall near the cap, on it elsewhere: what the gap gives way by is in the tangent."""
+    braid = LayeredBraid(
+        kinds=("sleeve",),
+        layer_diameters=(26.0,),
+        leads=(150.0,),
+        threads=(40,),
+        senses=(0,),
+        stiffness_shares=(1.0,),
+        crimp_radii=(12.8,),
+    )
+    muscle = Muscle(inner_diameter=20, wall_thickness=2, length=100, braid=braid)
+    case = make_case(model="membrane", muscle=muscle, numerics=COARSE)
+    found = errors(case, amplitude=0.02, multiplier=0.0, contraction=-0.02, pressure=0.3)
+    assert found["thread_stretch_max"] > 1.005
+    check(found, tolerance=1e-5)
+
+
 @pytest.mark.parametrize("model", ["membrane", "solid"])
 def test_sleeve_around_one_layer_in_the_wall(make_case, errors, model):
     """A taut sleeve, narrower than the tube, and under it a layer of two families."""

@@ -39,6 +39,7 @@ class Wound:
     sense: int
     stiffness: float
     thread_diameter: float | None
+    crimp: float = 0.0  # radius of a collar that is wider than the tube
 
     def layer(self) -> Layer:
         """A family of it, for what is asked of its shape alone."""
@@ -77,6 +78,7 @@ def resolved(
     radius = place(number, own, tube, refuse)
     tangent, lead = _wound(number, own, common, radius, refuse)
     radius, lead = _drawn(number, own, tube, (radius, tangent, lead), refuse)
+    crimp = _crimp(number, own, tube, radius, refuse) if kind is Kind.SLEEVE else 0.0
     ea, width = _thread(number, own, common, refuse)
     made = Wound(
         kind=kind,
@@ -86,6 +88,7 @@ def resolved(
         sense=SENSES[own.get("sense", "both")],
         stiffness=ea,
         thread_diameter=width,
+        crimp=crimp,
     )
     for allowed in checks.wound_angle(math.atan(made.layer().tangent)):
         said = own if any(key in own for key in ANGLES) else common
@@ -111,6 +114,9 @@ def braid(layers: Sequence[Wound]) -> AnyBraid:
         threads=tuple(layer.threads for layer in layers),
         senses=tuple(layer.sense for layer in layers),
         stiffness_shares=tuple(layer.stiffness / most for layer in layers),
+        crimp_radii=tuple(layer.crimp for layer in layers)
+        if any(each.crimp for each in layers)
+        else (),
     )
 
 
@@ -156,13 +162,6 @@ def _free_radius(number: int, own: Mapping[str, Any], tube: Muscle, refuse: Refu
     if key == "free_radius" and "gap" in own:
         raise refuse(number, "gap", own["gap"], "not beside free_radius: it says the same")
     outer = float(Decimal(str(tube.inner_diameter)) / 2 + Decimal(str(tube.wall_thickness)))
-    crimped = own.get("crimp_radius", outer)
-    if not math.isclose(crimped, outer, rel_tol=SAME):
-        allowed = (
-            f"{outer:g} (mm), the tube's outer radius: from another collar a sleeve hangs free to "
-            "where it meets the wall, which no model has; it is some 3 % of the force at 0 %"
-        )
-        raise refuse(number, "crimp_radius", crimped, allowed)
     gap = own.get("gap", 0.0)
     free = own.get("free_radius", float(Decimal(str(outer)) + Decimal(str(gap))))
     if not NARROWEST * outer <= free <= WIDEST * outer:
@@ -172,6 +171,23 @@ def _free_radius(number: int, own: Mapping[str, Any], tube: Muscle, refuse: Refu
         allowed = f"from {low:.4g} to {high:.4g} (mm): the tube's outer radius is {outer:g}"
         raise refuse(number, key, own[key], allowed)
     return float(free)
+
+
+def _crimp(
+    number: int, own: Mapping[str, Any], tube: Muscle, radius: float, refuse: Refuse
+) -> float:
+    """Radius of the collar of a sleeve of some radius; 0 if it is as wide as the tube [mm]."""
+    outer = tube.outer_radius
+    crimped = own.get("crimp_radius", outer)
+    if math.isclose(crimped, outer, rel_tol=SAME):
+        return 0.0
+    if not outer < crimped <= radius * (1 + SAME):
+        allowed = (
+            f"from {outer:g}, the tube's outer radius, to {max(radius, outer):.6g}, that of the "
+            "sleeve at the muscle's length (mm)"
+        )
+        raise refuse(number, "crimp_radius", crimped, allowed)
+    return float(crimped)
 
 
 def _wound(

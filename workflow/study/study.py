@@ -379,6 +379,11 @@ class _Muscles:
                 found.append(layers.resolved(number, own, common, tube, refuse))
         if len(found) < len(values["layers"]):
             raise AlreadyRefused
+        held = [number for number, made in enumerate(found) if made.crimp]
+        if len(held) > 1:
+            said = values["layers"][held[1]]["crimp_radius"]
+            allowed = "one sleeve of a muscle on a collar of its own"
+            raise refuse(held[1], "crimp_radius", said, allowed)
         for key in common:
             same = (
                 ANGLE_KEYS if key in ANGLE_KEYS else (EA, MODULUS) if key in (EA, MODULUS) else ()

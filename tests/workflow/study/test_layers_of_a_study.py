@@ -101,6 +101,13 @@ def test_a_base_gives_what_its_layers_do_not_say(planned):
     assert made["three"].muscle == made["paper"].muscle
 
 
+def test_collar_of_a_sleeve(planned):
+    """Wider than the tube it is of the muscle; as wide it is what there is without."""
+    for text, crimps in (("crimp_radius: 12.5", (12.5,)), ("crimp_radius: 12", ()), ("", ())):
+        made = planned(SLEEVE.replace("gap: 1", f"gap: 1, {text}".rstrip(", "))).study.muscles
+        assert made["one"].muscle.braid.crimp_radii == crimps
+
+
 EMBEDDED = "{kind: embedded, depth: 0.3, sense: clockwise, lead: 144, threads: 60}"
 REFUSED = [
     # (layers, key named, what is said)
@@ -123,7 +130,17 @@ REFUSED = [
     (SLEEVE.replace("gap: 1", "gap: 0.0005"), "", "warning"),
     (SLEEVE.replace("gap: 1", "gap: 1, free_radius: 13"), "layers.0.gap", "says the same"),
     (SLEEVE.replace("gap: 1", "free_length: 100"), "layers.0.free_length", "can be drawn to"),
-    (SLEEVE.replace("gap: 1", "crimp_radius: 13"), "layers.0.crimp_radius", "which no model has"),
+    (
+        SLEEVE.replace("gap: 1", "crimp_radius: 13"),
+        "layers.0.crimp_radius",
+        "from 12, the tube's outer radius, to ",
+    ),
+    (
+        "[{kind: sleeve, gap: 1, crimp_radius: 12.5, lead: 150, threads: 60},"
+        " {kind: sleeve, gap: 2, crimp_radius: 12.5, lead: 150, threads: 60}]",
+        "layers.1.crimp_radius",
+        "one sleeve of a muscle",
+    ),
     (SLEEVE.replace("gap: 1", "thread_modulus: 60e3"), "layers.0.thread_diameter", "beside"),
     (
         SLEEVE.replace("gap: 1", "thread_diameter: 3"),
