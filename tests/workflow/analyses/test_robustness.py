@@ -1,5 +1,6 @@
 """Hard cases: which cases it asks for, and what its table says of synthetic solutions."""
 
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -78,6 +79,39 @@ def test_threads_of_the_hypercube_are_no_closer_than_their_diameter(asked):
         braid, stiffness = case.muscle.braid, case.thread.stiffness
         gap = np.pi * braid.layer_diameters[0] * np.cos(braid.angle) / braid.threads
         assert gap > np.sqrt(4 * stiffness / (2100 * np.pi))
+
+
+def test_any_muscles_fill_their_limits(asked):
+    """200 tubes in sleeves, of five laws, from 1 mm of bore, with gaps to 30 % of the radius."""
+    found = [a.case for a in of(asked, set="any muscle", model="solid", mesh=1)]
+    assert len(found) == 200
+    assert len(of(asked, set="any muscle", model="membrane")) == 200
+    assert len(of(asked, set="any muscle", model="solid", mesh=2)) == 20
+    bores = [case.muscle.inner_diameter for case in found]
+    gaps = [case.muscle.layers[0].radius / case.muscle.outer_radius - 1 for case in found]
+    assert 1 <= min(bores) < 1.1
+    assert 0 <= min(gaps) < 0.01
+    assert 0.29 < max(gaps) < 0.3
+    laws = Counter(case.rubber.law() for case in found)
+    assert len(laws) == 5
+    assert min(laws.values()) > 20
+    for case in found:
+        layer, pressure = case.muscle.layers[0], case.path.held
+        if case.path.kind != "isobaric":
+            pressure = case.path.stops[-1]
+        angle = np.arctan(layer.tangent)
+        around = layer.threads * case.thread.stiffness * np.sin(angle) ** 2
+        around /= np.pi * layer.radius * np.cos(angle)  # per strain
+        assert pressure * layer.radius < 0.1001 * around
+
+
+def test_the_gap_of_a_sleeve_is_in_the_table(asked):
+    one = of(asked, set="any muscle", model="solid", mesh=1)[0]
+    row = tables.table([solved(one, np.ones(one.case.path.states))]).iloc[0]
+    assert row["gap"] == pytest.approx(
+        one.case.muscle.layers[0].radius / one.case.muscle.outer_radius - 1
+    )
+    assert row["rubber"] == one.case.rubber.law()
 
 
 def solved(asked: AnalysisCase, force: np.ndarray) -> Solved:

@@ -1,9 +1,10 @@
-"""Do hard cases stay stable? Named hard cases on three meshes, and a Latin hypercube of muscles.
+"""Do hard cases stay stable? Named hard cases on three meshes, and Latin hypercubes of muscles.
 
 Named cases run from -5 to 25 % of contraction in steps of 1 %. They end at 25 %, or at a limit that
 the three meshes agree on. The hypercube spans what may be built; a sample that cannot be built
 (threads closer than their diameter) is drawn again. A tenth of it is solved again on a mesh twice
 as fine with steps half as long, and twenty go through a cycle, their rubber with a memory.
+Another hypercube is of any muscles (any_muscle.py).
 """
 
 import math
@@ -25,6 +26,7 @@ from solver.memory import Memory
 from solver.numerics import Numerics, Spread
 from solver.rubber.rubber_law import RubberLaw
 from workflow.analyses.analysis import AnalysisCase
+from workflow.analyses.robustness import any_muscle
 from workflow.study import fit
 from workflow.study.contents import Study
 
@@ -59,13 +61,14 @@ LIMITS = {  # of the hypercube: name -> (low, high, logarithmic)
     "path": (0, 5, False),  # 0 to 3 isobaric, to 4 isometric, to 5 isotonic
 }
 MEMORY, PERIOD, CYCLE_STEPS = Memory.flat(0.06, 1e-3, 1e3), 4.0, 40  # of cycles; s
+ANY = "any muscle"  # the set of the other hypercube
 LAYERS = (0.15, 0.45)  # depth of the layers, shares of the wall
 
 
 def cases(study: Study) -> list[AnalysisCase]:
-    """Named cases by mesh, their membranes, the hypercube, its repeated tenth, and cycles."""
+    """Named cases by mesh, their membranes, both hypercubes, their repeated tenths, and cycles."""
     samples = _hypercube()[0]
-    return [*_named(study), *samples, *_cycles(samples)]
+    return [*_named(study), *samples, *_cycles(samples), *_any_muscles()]
 
 
 @dataclass(frozen=True)
@@ -149,20 +152,14 @@ def _hypercube() -> tuple[list[AnalysisCase], int]:
     """The samples, and how many had to be drawn again because they cannot be built."""
     points = qmc.LatinHypercube(len(LIMITS), seed=SEED).random(SAMPLES)
     again = np.random.default_rng(SEED)
-    found, redrawn = [], 0
+    found: list[AnalysisCase] = []
+    redrawn = 0
     for number, point in enumerate(points):
         case = _sample(point)
         while case is None:
             redrawn += 1
             case = _sample(again.random(len(LIMITS)))
-        tags: dict[str, str | float] = {"set": "hypercube", "name": f"{number}", "mesh": 1}
-        found.append(AnalysisCase(case, f"sample {number}", tags))
-        membrane = replace(case, model="membrane", fields_at=())
-        found.append(AnalysisCase(membrane, f"sample {number}, membrane", tags))
-        if number % REPEATED == 0:
-            twice = Numerics(section=replace(HYPERCUBE_MESH, refinement=2))
-            finer = replace(case, path=_halved(case.path), numerics=twice)
-            found.append(AnalysisCase(finer, f"sample {number}, finer", tags | {"mesh": 2}))
+        found += _of_sample(case, "hypercube", number, HYPERCUBE_MESH)
     return found, redrawn
 
 
@@ -181,6 +178,37 @@ def _cycles(samples: Sequence[AnalysisCase]) -> Iterator[AnalysisCase]:
         cycle = LoadPath(kind=PathKind.ISOBARIC, held=pressure, stops=stops, history=history)
         case = replace(case, path=cycle, memory=MEMORY)
         yield AnalysisCase(case, f"sample {number}, cycle", tags)
+
+
+def _of_sample(case: Case, of: str, number: int, mesh: SectionMesh) -> Iterator[AnalysisCase]:
+    """A sample of a hypercube, its membrane, and every tenth on a finer mesh."""
+    tags: dict[str, str | float] = {"set": of, "name": f"{number}", "mesh": 1}
+    said = "sample" if of == "hypercube" else of
+    yield AnalysisCase(case, f"{said} {number}", tags)
+    membrane = replace(case, model="membrane", fields_at=())
+    yield AnalysisCase(membrane, f"{said} {number}, membrane", tags)
+    if number % REPEATED == 0:
+        twice = Numerics(section=replace(mesh, refinement=2))
+        finer = replace(case, path=_halved(case.path), numerics=twice)
+        yield AnalysisCase(finer, f"{said} {number}, finer", tags | {"mesh": 2})
+
+
+def _any_muscles() -> Iterator[AnalysisCase]:
+    """Samples of sleeves with gaps and of five laws, on the mesh that a study has by default."""
+    again = np.random.default_rng(any_muscle.SEED)
+    for number, point in enumerate(any_muscle.points(SAMPLES)):
+        sample = any_muscle.values(point)
+        while (muscle := any_muscle.muscle(sample)) is None:
+            sample = any_muscle.values(again.random(len(any_muscle.LIMITS)))
+        blocked = abs(float(net.force(muscle, sample["pressure"], 0.0)))
+        case = Case(
+            muscle=muscle,
+            rubber=any_muscle.law(sample),
+            thread=Thread(stiffness=any_muscle.stiffness(sample)),
+            path=any_muscle.path(sample, blocked),
+            model="solid",
+        )
+        yield from _of_sample(case, ANY, number, SectionMesh())
 
 
 def _sample(point: np.ndarray) -> Case | None:

@@ -10,6 +10,7 @@ from matplotlib.tri import Triangulation
 
 from workflow.analyses import undrawn
 from workflow.analyses.analysis import Solved
+from workflow.analyses.robustness.cases import ANY
 from workflow.data import stress
 from workflow.figures import curves, style
 
@@ -36,20 +37,26 @@ def draw(solved: Sequence[Solved], tables: Mapping[str, pd.DataFrame]) -> dict[s
 
 
 def overview(table: pd.DataFrame) -> Figure:
-    """Named cases by smallest det F and mesh; the hypercube by status; its cost."""
+    """Named cases by smallest det F and mesh; both hypercubes by status; cost of the first."""
     named = table[(table["set"] == "named") & (table["model"] == "solid")]
     cube = table[(table["set"] == "hypercube") & (table["model"] == "solid") & (table["mesh"] == 1)]
-    figure, places = style.grid(style.FULL, 7.4, 1, 2, gap=(0.75, 0.5), width_ratios=[1.2, 1])
+    sleeved = table[(table["set"] == ANY) & (table["model"] == "solid") & (table["mesh"] == 1)]
+    figure, places = style.grid(style.FULL, 8.6, 1, 2, gap=(0.75, 0.5), width_ratios=[1.2, 1])
     figure.subplots_adjust(left=0.25, bottom=0.08)
     left = places[0, 0].subgridspec(1, 2, wspace=0.12)
     first = figure.add_subplot(left[0, 0])
     second = figure.add_subplot(left[0, 1], sharey=first)
-    right = places[0, 1].subgridspec(3, 1, hspace=0.62)
+    right = places[0, 1].subgridspec(4, 1, hspace=0.66, height_ratios=[1.2, 1.2, 1, 1])
     _named_det(first, named)
     _named_mesh(second, named)
-    _cube(figure.add_subplot(right[0, 0]), cube)
-    _cube_det(figure.add_subplot(right[1, 0]), cube)
-    _cube_effort(figure.add_subplot(right[2, 0]), cube)
+    first = figure.add_subplot(right[0, 0])
+    _by_status(first, cube, "thread strain", f"hypercube, {len(cube)} muscles")
+    first.set(xscale="log", xlabel="p D² / (threads × EA), a thread strain")
+    second = figure.add_subplot(right[1, 0])
+    _by_status(second, sleeved, "gap", f"{len(sleeved)} of any muscles, in sleeves")
+    second.set(xlabel="gap / outer radius of the tube")
+    _cube_det(figure.add_subplot(right[2, 0]), cube)
+    _cube_effort(figure.add_subplot(right[3, 0]), cube)
     curves.note(figure, _missing(named, cube))
     return figure
 
@@ -111,20 +118,19 @@ def _named_mesh(ax: Any, named: pd.DataFrame) -> None:
     ax.tick_params(labelleft=False)
 
 
-def _cube(ax: Any, cube: pd.DataFrame) -> None:
+def _by_status(ax: Any, cube: pd.DataFrame, x: str, title: str) -> None:
     for status, rows in cube.groupby("status"):
         ax.plot(
-            rows["thread strain"],
+            rows[x],
             rows["pressure by modulus"],
             linestyle="",
             label=f"{status}: {len(rows)}",
             fillstyle="none" if status == "converged" else "full",
             **STATUS.get(str(status), OTHER),
         )
-    ax.set(xscale="log", yscale="log", ylabel="2 p / shear modulus")
-    ax.set_xlabel("p D² / (threads × EA), a thread strain")
+    ax.set(yscale="log", ylabel="2 p / shear modulus")
     ax.set_ylim(bottom=cube["pressure by modulus"].min() / 20)  # room for the legend
-    ax.set_title(f"hypercube, {len(cube)} muscles")
+    ax.set_title(title)
     ax.legend(loc="lower left", fontsize=7, handlelength=1, borderaxespad=0.1)
 
 

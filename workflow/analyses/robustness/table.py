@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from geometry.braid import Kind
+from geometry.muscle import Muscle
 from solver.load_path import Control
 from solver.status import CaseStatus, StateStatus
 from workflow.analyses.analysis import Solved
@@ -13,7 +15,11 @@ from workflow.data.states import SHOWN
 from workflow.study.contents import Study
 
 APART = 0.03  # share of the largest force from which a membrane is far from its solid
-MESH_APART = {"named": 1e-3, "hypercube": 5e-3}  # the same of a mesh from a finer one
+MESH_APART = {
+    "named": 1e-3,
+    "hypercube": 5e-3,
+    "any muscle": 5e-3,
+}  # the same of a mesh from a finer one
 NOTE_COLUMNS = [
     "set",
     "name",
@@ -99,6 +105,8 @@ def _row(one: Solved) -> dict[str, Any]:
         **one.asked.tags,
         "model": case.model,
         "path": path.kind.value,
+        "rubber": case.rubber.law(),
+        "gap": _gap(muscle),
         "status": one.solution.status.value,
         "reason": one.solution.reason,
         "states": len(states),
@@ -117,6 +125,12 @@ def _row(one: Solved) -> dict[str, Any]:
         / (muscle.braid.threads_each * case.thread.stiffness),
         "record": case.key,
     }
+
+
+def _gap(muscle: Muscle) -> float:
+    """Of the widest sleeve, as a share of the tube's outer radius; NaN without one."""
+    sleeves = [layer.radius for layer in muscle.layers if layer.kind is Kind.SLEEVE]
+    return max(sleeves) / muscle.outer_radius - 1 if sleeves else np.nan
 
 
 def _agreement(one: Solved, reference: Solved) -> dict[str, Any]:
