@@ -40,6 +40,29 @@ def test_width_of_the_third_loop(make_case, solve_case, samples, expected):
     assert abs(off) < 0.025 * lost * (50 / samples) ** 2
 
 
+@pytest.mark.parametrize(("share", "expected"), [(0.12, 15.695), (0.18, 23.166)])
+def test_width_by_the_relaxation(make_case, solve_case, share, expected):
+    """Steps of this length make it 6e-4 smaller."""
+    case = make_case(**cycles(50, memory=Memory.flat(share, 1e-3, 1e3)))
+    found = width(solve_case(case).states, 50)
+    assert found == pytest.approx(expected, rel=8e-4)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "wide", "middle"), [(0.01, 0.00309, 0.1173), (10, 0.00306, 0.0964)]
+)
+def test_contraction_under_a_load(make_case, solve_case, frequency, wide, middle):
+    """200 N, 0 to 0.4 MPa and back, three times: width and mean at 0.3 MPa."""
+    times, stops = sampled(Wave.TRIANGLE, 0, 0.4, 1 / frequency, 3, 60)
+    history = History(times=times, period=1 / frequency)
+    path = LoadPath(kind="isotonic", held=200.0, stops=stops, history=history)
+    states = solve_case(make_case(path=path, memory=FLAT)).states
+    p, e = (states[name][-61:] for name in ("pressure", "contraction"))
+    there, back = np.interp(0.3, p[:31], e[:31]), np.interp(0.3, p[30:][::-1], e[30:][::-1])
+    assert back - there == pytest.approx(wide, abs=2e-5)
+    assert (there + back) / 2 == pytest.approx(middle, abs=1e-4)
+
+
 @pytest.mark.parametrize(
     ("rate", "stiffer", "force"), [(1e12, 1.42, 172.985465), (1e-12, 1, 274.252883)]
 )

@@ -41,6 +41,26 @@ def test_slow_vibrations_are_static_and_fast_ones_of_a_stiffer_rubber(make_case,
     assert abs(fast.imag) < 1e-4
 
 
+@pytest.mark.parametrize(
+    ("share", "frequency", "damping", "within"),
+    [(0.06, 3.5073, 0.00630, (1e-4, 1e-3)), (0.12, 3.6682, 0.01135, (5e-4, 0.01))],
+)
+def test_a_mass_that_hangs(make_case, solve_case, share, frequency, damping, within):
+    """20 kg at 0.3 MPa: K' = m w^2, and K''/(2 K') is damped. The first numbers are of the complex
+    root, the second of a run in time, whose steps add to them."""
+    load = 20 * 9.80665
+    case = make_case(
+        model="cylinder",
+        path=LoadPath(kind="isotonic", held=load, stops=(0.3,)),
+        memory=Memory.flat(share, 1e-3, 1e3),
+        frequencies=(frequency,),
+    )
+    (answer,) = answers(solve_case(case))
+    found = np.sqrt(answer.real * 1e3 / 20) / (2 * np.pi)
+    assert found == pytest.approx(frequency, rel=within[0])
+    assert answer.imag / answer.real / 2 == pytest.approx(damping, rel=within[1])
+
+
 def test_first_order_of_the_membrane(make_case, solve_case):
     """K + Q sum g i w tau/(1 + i w tau): K = 9.6415, Q = 3.75647 N/mm, for small shares."""
     little = Memory(shares=(1e-6,), times=(0.1,))
