@@ -12,6 +12,7 @@ stop), contractions within CONTRACTION_LIMITS, as far as there are states.
 
 Without pressure a muscle rests at its own length, and a shortened one does not pull: if it does
 so in the model, only the smoothing of the slack law does. Then the answer is none, and says so.
+A wall that has crumpled under threads that push may pull there; that is no answer.
 
 ``find`` is for models in Python; solver/path/zero.idp is its twin.
 """
@@ -26,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.case import Case
-from solver.effects import Rubber
+from solver.effects import Rubber, ThreadLaw
 from solver.load_path import CONTRACTION_LIMITS, Control
 from solver.status import StateStatus
 
@@ -49,6 +50,7 @@ class Search:
     low: float
     high: float
     step: float  # the first from zero, of pressure; every one, of contraction
+    threads_push: bool = False
 
     @classmethod
     def of(cls, case: Case) -> "Search":
@@ -59,7 +61,8 @@ class Search:
             return cls(held, path.held, swept, *CONTRACTION_LIMITS, CONTRACTION_STEP)
         limit = limit_pressure(case)
         high = max(PRESSURES * limit, path.stops[-1])
-        return cls(held, path.held, swept, 0.0, high, limit / PRESSURES)
+        pushing = case.effects.threads is ThreadLaw.TWO_WAY
+        return cls(held, path.held, swept, 0.0, high, limit / PRESSURES, pushing)
 
 
 def limit_pressure(case: Case) -> float:
@@ -124,7 +127,8 @@ class Finder(Generic[Position]):
         found = None
         if bottom.g > 0 or bottom.slope < 0:
             found = self._beyond(bottom, self.search.low)
-        if found is None and self._over_pressure and self.search.still >= 0:
+        slackens = not self.search.threads_push
+        if found is None and slackens and self._over_pressure and self.search.still >= 0:
             slack = (p for p in self.known if self._is_at(p, 0.0) and p.g > 0)
             found = next(slack, None)
         for lower, upper in zip(self.points, self.points[1:], strict=False):

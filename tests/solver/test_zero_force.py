@@ -18,9 +18,19 @@ MODELS = ["cylinder", "membrane", "solid"]
 # --- the search itself, on explicit functions ----------------------------------------------------
 
 
-def found_on(force, slope, points, *, low=0.0, high=1.0, step=0.01, ends=(-math.inf, math.inf)):
+def found_on(
+    force,
+    slope,
+    points,
+    *,
+    low=0.0,
+    high=1.0,
+    step=0.01,
+    ends=(-math.inf, math.inf),
+    threads_push=False,
+):
     """Finds the zero of a function over pressure; there are no states outside ``ends``."""
-    search = Search(Control.CONTRACTION, 0.1, Control.PRESSURE, low, high, step)
+    search = Search(Control.CONTRACTION, 0.1, Control.PRESSURE, low, high, step, threads_push)
 
     def point(x):
         return Point(x=x, g=force(x), slope=slope(x), unloaded=False, position=x)
@@ -77,6 +87,14 @@ def test_a_zero_that_falls_is_none():
     found, finder = found_on(lambda x: 0.3 - x, lambda x: -1.0, (0.1, 0.5))
     assert finder.range == (0.0, 0.5)
     assert found.x == 0.0  # shortened and without pressure, it pulls by the smoothing alone
+
+
+@pytest.mark.parametrize(("threads_push", "expected"), [(False, 0.0), (True, 0.27)])
+def test_what_pulls_without_pressure_is_the_smoothing_unless_threads_push(threads_push, expected):
+    """Then it is a wall that has crumpled, and the threshold is where the force rises."""
+    points = (0.05, 0.1, 0.2, 0.3)
+    found, _ = found_on(*cubic(-0.5, 0.02, 0.27), points, threads_push=threads_push)
+    assert found.x == pytest.approx(expected, abs=1e-9)
 
 
 def test_a_jump_is_no_zero():
@@ -171,6 +189,14 @@ def test_where_only_the_smoothing_pulls_the_threshold_is_zero(zero, model):
     assert np.isnan(value)
     assert status is StateStatus.NO_ROOT
     assert note == "no change of sign from 0 to 0.1 MPa"
+
+
+def test_a_wall_that_has_crumpled_under_threads_that_push_has_no_threshold_there(zero):
+    effects = Effects(threads="two_way")
+    crumpled = CaseStatus.INVALID_STATE  # at 0.05 MPa
+    value, status, _ = zero("solid", "isometric", 0.2, (0.05, 0.2, 0.3), crumpled, effects=effects)
+    assert value == pytest.approx(0.2706, abs=5e-4)
+    assert status is StateStatus.CONVERGED
 
 
 @pytest.mark.parametrize("model", ["cylinder", "solid"])
