@@ -1,6 +1,7 @@
-"""A Slurm of one node on this machine, by Debian's packages, all of it in one folder."""
+"""A Slurm of two nodes on this machine, by Debian's packages, all of it in one folder."""
 
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -13,7 +14,6 @@ SETTINGS = """\
 ClusterName=one
 SlurmctldHost={host}(127.0.0.1)
 SlurmctldPort={controller}
-SlurmdPort={node}
 SlurmUser=root
 SlurmdUser=root
 AuthType=auth/munge
@@ -25,11 +25,11 @@ TaskPlugin=task/none
 SwitchType=switch/none
 ReturnToService=2
 SlurmctldPidFile={folder}/slurmctld.pid
-SlurmdPidFile={folder}/slurmd.pid
-SlurmdSpoolDir={folder}/slurmd
+SlurmdPidFile={folder}/slurmd.%n.pid
+SlurmdSpoolDir={folder}/slurmd.%n
 StateSaveLocation={folder}/state
 SlurmctldLogFile={folder}/slurmctld.log
-SlurmdLogFile={folder}/slurmd.log
+SlurmdLogFile={folder}/slurmd.%n.log
 SlurmdParameters=config_overrides
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
@@ -41,9 +41,12 @@ JobAcctGatherType=jobacct_gather/none
 JobCompType=jobcomp/none
 InactiveLimit=0
 KillWait=2
-NodeName={host} NodeAddr=127.0.0.1 CPUs=8 RealMemory=40000 State=UNKNOWN
-PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
+PartitionName=all Nodes={names} Default=YES MaxTime=INFINITE State=UP
 """
+NODE = (
+    "NodeName={name} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=4 RealMemory=20000\n"
+)
+NODES = ("one", "two")  # a job of profiles/slurm fills one
 
 
 def install() -> None:
@@ -67,13 +70,14 @@ class Cluster:
     def __enter__(self) -> "Cluster":
         self.folder.chmod(0o755)
         host = socket.gethostname().partition(".")[0]
-        ports = {"controller": _free_port(), "node": _free_port()}
-        text = SETTINGS.format(host=host, folder=self.folder, **ports)
-        (self.folder / "slurm.conf").write_text(text)
+        names = ",".join(NODES)
+        text = SETTINGS.format(host=host, folder=self.folder, names=names, controller=_free_port())
+        nodes = [NODE.format(name=name, host=host, port=_free_port()) for name in NODES]
+        (self.folder / "slurm.conf").write_text("".join(nodes) + text)
         assert CONFIGURATION.is_symlink() or not CONFIGURATION.exists(), "a Slurm of its own"
         CONFIGURATION.unlink(missing_ok=True)
         CONFIGURATION.symlink_to(self.folder / "slurm.conf")
-        for name in ("slurmd", "state"):
+        for name in ("state", *(f"slurmd.{node}" for node in NODES)):
             (self.folder / name).mkdir()
         key = self.folder / "munge.key"
         key.write_bytes(os.urandom(128))
@@ -83,8 +87,9 @@ class Cluster:
         self._begin("munged", "--foreground", "--force", *options, f"--seed-file={key}.seed")
         self._wait(lambda: (self.folder / "munge.socket").exists(), "munged")
         self._begin("slurmctld", "-D")
-        self._begin("slurmd", "-D", "-N", host)
-        self._wait(lambda: "idle" in self.run("sinfo", "-h", "-o", "%t"), "slurmctld, slurmd")
+        for node in NODES:
+            self._begin("slurmd", "-D", "-N", node)
+        self._wait(lambda: self._idle() == len(NODES), "slurmctld, slurmd")
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -106,6 +111,13 @@ class Cluster:
         """Numbers of the jobs in a state."""
         return self.run("squeue", "-h", "-o", "%i", "-t", state).split()
 
+    def nodes_of_jobs(self) -> set[str]:
+        """Nodes on which jobs of the last minutes have run."""
+        return set(re.findall(r"\bNodeList=(\w+)", self.run("scontrol", "show", "jobs")))
+
+    def _idle(self) -> int:
+        return self.run("sinfo", "-N", "-h", "-o", "%t").split().count("idle")
+
     def wait_for_job(self, seconds: float = 90) -> str:
         """The number of a job, as soon as one runs."""
         self._wait(lambda: self.jobs("RUNNING"), "a job", seconds)
@@ -114,7 +126,8 @@ class Cluster:
     def _begin(self, name: str, *arguments: str) -> None:
         program = shutil.which(name, path=f"{os.environ['PATH']}:/usr/sbin:/sbin")
         assert program is not None
-        with (self.folder / f"{name}.out").open("wb") as out:
+        number = len(self._processes)
+        with (self.folder / f"{name}.{number}.out").open("wb") as out:
             self._processes.append(subprocess.Popen([program, *arguments], stdout=out, stderr=out))
 
     def _wait(self, ready, what: str, seconds: float = 30) -> None:

@@ -1,11 +1,13 @@
-"""Batches on a cluster: a real Slurm of one node; and what a cluster means for a shared folder."""
+"""Batches on a cluster: a real Slurm of two nodes; and what a cluster means for a shared folder."""
 
 import contextlib
 import importlib.util
 import os
+import shutil
 import signal
 import subprocess
 import time
+from pathlib import Path
 
 import pytest
 import yaml
@@ -13,8 +15,8 @@ import yaml
 from geometry.files import HOST
 from workflow.run import lock
 
-from .project import ROOT
-from .slurm import Cluster, install
+from .project import ROOT, Project
+from .slurm import NODES, Cluster, install
 from .test_faults import fake
 
 PROFILE = "profiles/slurm"
@@ -22,16 +24,38 @@ SOON = ("--slurm-init-seconds-before-status-checks", "1", "--seconds-between-sta
 RUN = ("--profile", PROFILE, *SOON, "--config", "batches=2")
 
 
-@pytest.fixture
-def cluster(tmp_path):
+SCENES = """\
+  slow:
+    path: isobaric
+    muscles: [longer]
+    pressure: [0.2]
+    contraction: [0, 0.05]
+    models: [membrane]
+  impossible:
+    path: isotonic
+    muscles: [short]
+    load: [10000000]
+    pressure: [0.1]
+    models: [cylinder]
+limits: {wall_time: 6, memory: 2000}
+"""
+HANGS = """\
+#!/bin/sh
+case "$*" in
+  *"-half_length 45.0 "*) exec sleep 600 ;;
+  *) exec {real} "$@" ;;
+esac
+"""
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
     """A cluster; it takes root to begin one, and where root is it must begin."""
     if os.geteuid() != 0:
         pytest.skip("only root can begin a cluster")
     assert importlib.util.find_spec("snakemake_executor_plugin_slurm"), "./setup.sh --slurm"
     install()
-    folder = tmp_path / "slurm"
-    folder.mkdir()
-    with Cluster(folder) as made:
+    with Cluster(tmp_path_factory.mktemp("slurm")) as made:
         yield made
 
 
@@ -85,6 +109,39 @@ def test_killed_cancelled_and_resumed_the_bytes_are_those_of_one_machine(
     assert found.keys() == expected.keys()
     assert [name for name in found if found[name] != expected[name]] == []
     assert cluster.jobs("RUNNING") == []
+
+
+def smoke(folder, tmp_path, *arguments):
+    """The smoke study in its own folder, with a case that fails and one that takes too long."""
+    folder.mkdir()
+    study = (ROOT / "config/smoke/study.yaml").read_text()
+    longer = "  longer: {base: short, length: 90}\n\nnumerics:"
+    text = study.replace("\nnumerics:", longer) + SCENES
+    (folder / "smoke.yaml").write_text(text)
+    program = tmp_path / "bin/FreeFem++"
+    if not program.exists():
+        program.parent.mkdir()
+        program.write_text(HANGS.format(real=shutil.which("FreeFem++")))
+        program.chmod(0o755)
+    run = ("snakemake", "-s", str(ROOT / "Snakefile"), "-d", str(folder))
+    made = Project.at(folder)
+    status, said = made.run(*arguments, "study=smoke.yaml", program=run, path=program.parent)
+    assert status == 1, said
+    assert "2 cases failed" in said
+    results = made.results().items()
+    return said, {
+        name: text for name, text in results if not {"logs", "solved"} & set(Path(name).parts)
+    }
+
+
+def test_the_smoke_study_on_two_nodes_gives_the_bytes_of_one_machine(cluster, tmp_path):
+    _, expected = smoke(tmp_path / "here", tmp_path, "--cores", "2", "--config")
+    profile = ("--profile", str(ROOT / PROFILE))
+    said, found = smoke(tmp_path / "there", tmp_path, *profile, *RUN[2:])
+    assert "longer membrane isobaric 0.2 MPa: timeout, stopped after 6 s, the limit" in said
+    assert found.keys() == expected.keys()
+    assert [name for name in found if found[name] != expected[name]] == []
+    assert cluster.nodes_of_jobs() >= set(NODES)
 
 
 def test_jobs_are_named_as_the_lock_looks_for_them():
