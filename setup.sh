@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what the pipeline needs: system packages (FreeFEM, a fast BLAS, the libraries gmsh links to) and
+# Installs what the pipeline needs: system packages (FreeFEM, a fast BLAS, a C compiler, the libraries gmsh links to) and
 # .venv with the Python packages of requirements.lock. Installs only what is missing; run it as often as you like.
 # PYTHON=/path/to/python3 ./setup.sh chooses the interpreter.
 #   --browser    chromium as well, in which tests open the pages
@@ -145,6 +145,14 @@ END
 
 LIBRARIES=$(PATH=$PATH:/usr/sbin:/sbin ldconfig -p)
 mapfile -t missing < <(missing_packages)
+# Wanted, not needed: maps are compiled for simulators (workflow/answers/maps/fmu.py).
+if ! command -v cc >/dev/null && ! command -v gcc >/dev/null; then
+    if command -v apt-get >/dev/null && { [[ $(id -u) == 0 ]] || sudo -n true 2>/dev/null; }; then
+        missing+=(gcc libc6-dev)
+    else
+        say "There is no C compiler (gcc): FMUs of maps will hold their source alone."
+    fi
+fi
 [[ ${#missing[@]} == 0 ]] || install_packages "${missing[@]}"
 is_complete || install_python_packages
 [[ -x .venv/bin/muscle ]] || write_command

@@ -27,11 +27,16 @@ def run(given: argparse.Namespace) -> int:
     for name in names:
         found = Builder(study, name).built()
         output = folder / f"{name}.nc"
-        files.write(found, output)
+        compiled = files.write(found, output)
         html_page.write_beside(output, f"Map {name}", "map", rows=False)  # of thousands
         print(
             f"{name}: {found.map.pressure.size} pressures, {found.map.contraction.size} "
             f"contractions; force within {found.error:.2g} N, near the threshold "
             f"{found.error_near:.2g} N, pressure within {found.error_inverse:.2g} MPa"
         )
+        if not compiled:
+            print(
+                f"{name}.fmu holds its source alone, which few simulators take: there is no C "
+                "compiler here that makes it (gcc on Debian)"
+            )
     return 0

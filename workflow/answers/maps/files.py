@@ -18,8 +18,11 @@ from workflow.figures.style import FULL, panels, percent
 LINES = 8  # pressures that are drawn at most
 
 
-def write(found: Checked, output: Path) -> None:
-    """Write ``output`` with the endings .nc, .mat, .csv, .fmu, .json, .png and .svg."""
+def write(found: Checked, output: Path) -> bool:
+    """Write ``output`` with the endings .nc, .mat, .csv, .fmu, .json, .png and .svg.
+
+    Whether the FMU is compiled: without a C compiler it is not.
+    """
     made = found.map
     data = made.dataset()
     data.attrs |= errors(found)
@@ -31,10 +34,11 @@ def write(found: Checked, output: Path) -> None:
         _write_mat(made, beside)
     with atomic_write(output.with_suffix(".json")) as beside:
         beside.write_text(json.dumps(as_dict(found), indent=1) + "\n")
-    fmu.write(made, output.with_suffix(".fmu"))
+    compiled = fmu.write(made, output.with_suffix(".fmu"))
     figure = draw(found)
     for suffix in (".svg", ".png"):
         style.save(figure, output.with_suffix(suffix))
+    return compiled
 
 
 def errors(found: Checked) -> dict[str, float]:
