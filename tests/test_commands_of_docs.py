@@ -1,7 +1,8 @@
 """Commands in README and docs: cheap ones are run, runs are dry, of all that they name is there.
 
 A block below ``<!-- run -->`` is run as it stands, those of a page one after the other in a folder
-of their own, with the files that the page asks to save (``<!-- file: NAME -->``).
+of their own, with the files that the page asks to save (``<!-- file: NAME -->``). What a page shows
+as the output of a command is what that says.
 """
 
 import argparse
@@ -25,6 +26,7 @@ DOCUMENTS += sorted((ROOT / "docs").rglob("*.md"))
 PARTS = ("geometry", "solver", "workflow", "config", "profiles", "pyproject.toml", "Snakefile")
 STARTS = (".venv/bin/", "./setup.sh", ".ci/run", "muscle ", "snakemake ", "python -m ")
 RUN = re.compile(r"^<!-- (run|file: (\S+)) -->\n```(\w+)\n(.*?)^```$", re.M | re.S)
+OUTPUT = re.compile(r"^<!-- output of: (.*?) -->\n\n((?:    .*\n)+)", re.M)
 FENCE = re.compile(r"^( *)```sh\n(.*?)^\1```$", re.M | re.S)
 
 
@@ -229,3 +231,22 @@ def test_marked_blocks_run(checkout, document):
             timeout=300,
         )
         assert done.returncode == 0, f"{text}\n{done.stdout}{done.stderr}"
+
+
+SHOWN = [found.groups() for d in DOCUMENTS for found in OUTPUT.finditer(d.read_text("utf-8"))]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("command", "shown"), SHOWN)
+def test_what_is_shown_is_what_a_command_says(checkout, command, shown):
+    done = subprocess.run(
+        shlex.split(command), cwd=checkout, capture_output=True, text=True, timeout=300, check=True
+    )
+    lines = [line.removeprefix("    ") for line in shown.splitlines()]
+    expected = [line for line in lines if line.strip() != "..."]
+    assert len(expected) > 1
+    assert done.stdout.splitlines()[: len(expected)] == expected
+
+
+def test_outputs_are_found():
+    assert [command for command, _ in SHOWN] == [".venv/bin/muscle ask dmsp20 0.25MPa 12%"]
