@@ -174,7 +174,7 @@ def _times(case: Case, solution: Solution) -> list[float]:
 def _clock(case: Case) -> str:
     """What ParaView's time is, with its unit."""
     if case.path.history is not None:
-        return "time in s"
+        return "that of the path [s]"
     if len(set(case.path.stops)) < len(case.path.stops):
         return "the number of the state"
     key = case.path.kind.swept.key

@@ -135,8 +135,10 @@ def _frequency(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:
 def _in_time(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
     """A scene in time, whose quantities are those of every state."""
     for quantity in asked.quantities:
+        allowed = _quantity(asked, quantity)
         if quantity in ZERO_FORCE or quantity == DYNAMIC:
             allowed = f"this quantity only out of time, not on a {asked.path} path"
+        if allowed:
             yield source.refuse((*keys, "quantities"), quantity, allowed)
     high = [p for p in asked.pressure or () if p > HIGHEST]
     if high:

@@ -20,7 +20,7 @@ from workflow.plan.plan import plan
 from workflow.study.errors import StudyError
 from workflow.study.study import load
 
-from ..synthetic import converged
+from ..synthetic import MUSCLE, converged, planned
 
 CONFIG = Path(__file__).parents[3] / "config" / "config.yaml"
 CORNERS = np.array([[10, 0, 15, 0], [12, 0, 16.5, 0], [10, 5, 15, 4]], dtype=float)
@@ -131,6 +131,41 @@ def test_only_scenes_that_ask_for_stress_have_files():
     files = paraview.files(plan(load(CONFIG)))
     fine = [f"dmsp20_solid_fine_isobaric_{p}.pvd" for p in (0.2, 0.3, 0.4)]
     assert sorted(files) == ["dmsp20_solid_default_isobaric_0.3.pvd", *fine]
+
+
+IN_TIME = (
+    MUSCLE
+    + """\
+scenes:
+  loops:
+    path: cycle
+    muscles: [one]
+    cycle: {held: pressure, period: 4, cycles: 1, samples: 4}
+    pressure: [0.3]
+    contraction: [0, 0.2]
+    models: [membrane]
+    quantities: [deformed_shape]
+"""
+)
+
+
+def test_a_series_in_time_has_every_state_at_its_time(tmp_path):
+    found = planned(tmp_path, IN_TIME)
+    assert list(paraview.files(found)) == ["loops_one_membrane_default_cycle_0.3_4s.pvd"]
+    (each,) = found.cases.values()
+    assert each.case.fields_at == (0.0, 0.1, 0.2)
+    states = unreached(5, record.variables(each.case)) | {"time": np.arange(5.0)}
+    fields = {k: {"meridian": CORNERS} for k in range(5)}
+    record.write(tmp_path / "c.h5", each.case, converged(states, fields=fields))
+    assert paraview.write_series(tmp_path / "c.h5", tmp_path / "c.pvd") == 5
+    sets = ElementTree.parse(tmp_path / "c.pvd").iter("DataSet")
+    assert [float(one.get("timestep")) for one in sets] == [0, 1, 2, 3, 4]
+    assert "time is that of the path [s]" in (tmp_path / "c.pvd").read_text()
+
+
+def test_a_cylinder_has_no_shape_in_time_either(tmp_path):
+    with pytest.raises(StudyError, match=r"only by membrane.*; not cylinder"):
+        planned(tmp_path, IN_TIME.replace("[membrane]", "[cylinder]"))
 
 
 def test_a_cell_comes_back_as_a_piece_of_the_tube(tmp_path, make_case):

@@ -29,6 +29,7 @@ from workflow.study.schema import QUANTITIES, SHEET
 MANY = 20_000  # states above which the solver's own numbers are left to the dataset
 MOST_SHEETS = 200  # curves that get a data sheet, 8 ms each
 MOST_TIMES = 600  # states of a curve in time
+MOST_WALLS = 150  # states whose wall is shown, some 4 kB each
 OF_SOLVER = {  # variables that say how a state was found, not what it is
     *("residual", "iterations", "cutbacks", "min_det_f", "min_det_f_nodes", "margin"),
     *("force_cap", "force_midplane", "smoothing_rate", "unstable_modes"),
@@ -73,6 +74,7 @@ def content(
     errors = {name: states[f"{name}_error"] for name in WITH_ERROR if name in quantities}
     models = {*table.curves["model"], *(curve["model"] for curve in of_timed)}
     named = _muscles(table, timed, muscles)
+    walls, unshown = _walls([*curves, *timed], states)
     return {
         "title": f"Pneumatic muscles: {study}",
         "quantities": {
@@ -101,7 +103,7 @@ def content(
             if muscle in {each["name"] for each in named}
             for found in its.values()
         ],
-        "walls": {"quantities": WALL, "states": _walls(curves, table)},
+        "walls": {"quantities": WALL, "states": walls, "leftOut": unshown},
         "sheets": _sheets(curves, muscles or {}),
         "claims": [
             claim | _about(str(claim.get("figure", "")), figures or {})
@@ -141,7 +143,7 @@ def _with_times(
     states = table.states.reset_index(drop=True)
     frames, found, thinned = [states], [], 0
     first = len(states)
-    for curve in timed:
+    for number, curve in enumerate(timed, len(table.curves)):
         solution, place = curve.solution, curve.place
         every = len(solution.state_status)
         step = -(-every // MOST_TIMES)
@@ -153,7 +155,7 @@ def _with_times(
         held, swept = curve.case.path.kind.held.key, curve.case.path.kind.swept.key
         loads = "load" in (held, swept)
         rows["load"] = rows["force"] if loads else np.full(len(kept), np.nan)
-        rows["point"] = "stop"
+        rows |= {"curve": number, "state": kept, "point": "stop"}
         rows["status"] = [solution.state_status[k].value for k in kept]
         rows["flags"] = [" ".join(sorted(solution.flags[k])) for k in kept]
         rows["note"] = [solution.notes[k] for k in kept]
@@ -225,27 +227,40 @@ def _curves(table: Table) -> list[dict[str, Any]]:
     ]
 
 
-def _walls(curves: Sequence[Curve], table: Table) -> list[dict[str, Any]]:
-    """The deformed wall in every state that has fields of one section."""
-    found = []
+def _walls(curves: Sequence[Curve], states: pd.DataFrame) -> tuple[list[dict[str, Any]], int]:
+    """The deformed wall in states that have fields of one section, and how many are left out.
+
+    Of more than MOST_WALLS every second or third one of a curve is taken, and so on.
+    """
+    there = []
     for number, curve in enumerate(curves):
         if not curve.solution.fields:
             continue
-        rows = table.states.index[table.states["curve"] == number]
-        for row in rows:
-            fields = curve.solution.fields.get(int(table.states.loc[row, "state"]))
-            if fields and "corners" in fields and fields["corners"].shape[1] == 4:
-                corners, stress = fields["corners"], fields["stress"]
-                found.append(
-                    {
-                        "curve": number,
-                        "row": int(table.states.index.get_loc(row)),
-                        "r": _rounded(corners[:, 2], 3),
-                        "z": _rounded(corners[:, 3], 3),
-                        "values": [_rounded(v, 4) for v in _painted(corners, stress)],
-                    }
-                )
-    return found
+        of_curve = states.loc[states["curve"] == number, "state"]
+        found = [
+            (row, curve.solution.fields.get(int(state), {})) for row, state in of_curve.items()
+        ]
+        there.append([(number, row, fields) for row, fields in found if _is_section(fields)])
+    count = sum(map(len, there))
+    every = -(-count // MOST_WALLS) or 1
+    kept = [each for own in there for each in own[::every]]
+    return [_wall(*each) for each in kept], count - len(kept)
+
+
+def _is_section(fields: Mapping[str, NDArray[np.float64]]) -> bool:
+    return "corners" in fields and fields["corners"].shape[1] == 4
+
+
+def _wall(curve: int, row: Any, fields: Mapping[str, NDArray[np.float64]]) -> dict[str, Any]:
+    """The wall of one state, three corners to a triangle, and a value of each triangle."""
+    corners = fields["corners"]
+    return {
+        "curve": curve,
+        "row": int(row),
+        "r": _rounded(corners[:, 2], 3),
+        "z": _rounded(corners[:, 3], 3),
+        "values": [_rounded(v, 4) for v in _painted(corners, fields["stress"])],
+    }
 
 
 def _painted(corners: NDArray[np.float64], stress: NDArray[np.float64]) -> list[NDArray[Any]]:

@@ -83,12 +83,15 @@ function address() {
 
 /** The curves of some muscles that are chosen, with their states as points. */
 function curvesOf(muscles) {
-  const kept = DATA.curves
+  const chosen = DATA.curves
     .map((curve, number) => ({ ...curve, number }))
-    .filter((c) => c.path === choice.path && muscles.includes(c.muscle) && choice.models.includes(c.model)
+    .filter((c) => c.path === choice.path && shownMuscles().includes(c.muscle) && choice.models.includes(c.model)
       && choice.variants.includes(c.variant) && choice.held.includes(c.held));
-  const names = unique(kept.map(nameOf));
-  return kept.map((c) => ({
+  // beside each other, the same held value of two muscles has the same colour
+  const single = choice.muscles.length === 1;
+  const nameOf = (c) => `${single ? "" : c.muscle} ${c.held} ${c.period || ""}`;
+  const names = unique(chosen.map(nameOf));
+  return chosen.filter((c) => muscles.includes(c.muscle)).map((c) => ({
     ...c,
     colour: COLOURS[names.indexOf(nameOf(c)) % COLOURS.length],
     dash: DASHES[Object.keys(DATA.models).indexOf(c.model) % DASHES.length],
@@ -97,9 +100,6 @@ function curvesOf(muscles) {
     points: pointsOf(c),
   }));
 }
-
-/** What curves of one colour have in common. */
-const nameOf = (curve) => `${curve.muscle} ${curve.held} ${curve.period || ""}`;
 
 function labelOf(curve) {
   const held = DATA.paths[curve.path].held;
@@ -501,7 +501,7 @@ function wallGroups() {
   for (const state of DATA.walls.states) {
     const c = DATA.curves[state.curve];
     if (!shownMuscles().includes(c.muscle)) continue;
-    const name = [c.muscle, DATA.models[c.model], c.variant, c.path].join(", ");
+    const name = [c.muscle, DATA.models[c.model], c.variant, c.path, ...(c.period ? [`period ${digits(c.period)} s`] : [])].join(", ");
     if (!found.has(name)) found.set(name, { name, states: [] });
     found.get(name).states.push(state);
   }
@@ -513,6 +513,7 @@ function showWall() {
   const any = groups.length > 0;
   $("wall-shown").hidden = !any;
   $("wall-none").textContent = any ? "" : "No fields have been recorded for what is shown. A scene with quantities: [stress] and models: [solid] records them.";
+  if (any && DATA.walls.leftOut) $("wall-none").textContent = `${DATA.walls.leftOut} states of this study are left out here; the records have them all.`;
   if (!any) return stop();
   if (wall.group >= groups.length) wall.group = 0;
   $("wall-curve").replaceChildren(...groups.map((g, k) => new Option(g.name, k, false, k === wall.group)));
@@ -528,8 +529,9 @@ function drawWall() {
   const { states } = groups[wall.group];
   const state = states[wall.at];
   const curve = DATA.curves[state.curve];
-  const { held, swept } = DATA.paths[curve.path];
-  const said = [[held, curve.held], [swept, DATA.states.columns[swept][state.row]]]
+  const { held, swept, inTime: timed } = DATA.paths[curve.path];
+  const along = unique([swept, ...(timed ? ["time"] : [])]).map((name) => [name, DATA.states.columns[name][state.row]]);
+  const said = [[held, curve.held], ...along]
     .map(([name, value]) => `${name} ${digits(value)} ${unitOf(name)}`.trim()).join(", ");
   $("wall-state").textContent = `${said} (${wall.at + 1} of ${states.length})`;
   const bounds = (list) => list.reduce(([a, b], values) => values.reduce(([c, d], v) => [Math.min(c, v), Math.max(d, v)], [a, b]), [Infinity, -Infinity]);
