@@ -14,8 +14,9 @@ from workflow.answers import sheet, sheet_files
 from workflow.answers.store import Store
 from workflow.plan.plan import read
 from workflow.plan.sheet_stops import stops_to
+from workflow.study import library
 from workflow.study.errors import StudyError
-from workflow.study.study import load
+from workflow.study.study import load, load_library
 
 ROOT = Path(__file__).parents[3]
 STUDY = """
@@ -120,6 +121,15 @@ def test_what_it_is_built_into(study):
     assert row.value == pytest.approx(rubber)
     assert "thread_diameter" in row.note
     assert "fitting_mass" in row.note
+
+
+@pytest.mark.parametrize("name", library.names("muscles"))
+def test_the_balance_closes_for_every_muscle_of_the_library(name, folder, monkeypatch):
+    """By the solid at 0.3 MPa, whatever its braid and rubber."""
+    monkeypatch.chdir(folder)
+    found = sheet.solved(load_library(), name, 0.3)
+    assert found.closes
+    assert abs(found.value("energy balance")) < 1e-5
 
 
 def test_a_balance_that_does_not_close_is_said(study, folder):
