@@ -7,7 +7,6 @@ logarithmic axis) is named in a note under the axes.
 
 import textwrap
 from collections.abc import Iterator
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -286,13 +285,24 @@ def _one_line(table: pd.DataFrame, x: str, y: str) -> str:
         curves = {
             name: each.groupby(x)[y].mean() for name, each in rows.groupby(SERIES, sort=False)
         }
-        for (one, a), (other, b) in combinations(curves.items(), 2):
-            both = pd.concat([a, b], axis=1).dropna()
-            if len(both) < 2 or len(both) < max(a.count(), b.count()):
-                continue
-            if (both.iloc[:, 0] - both.iloc[:, 1]).abs().max() <= SAME * both.abs().max().max():
-                found.append(f"{look_of(source)['label']} for {one} and {other}")
+        found += [
+            f"{look_of(source)['label']} for {one} and {other}" for one, other in _alike(curves)
+        ]
     return f"One and the same line: {'; '.join(found)}." if found else ""
+
+
+def _alike(curves: dict[str, pd.Series]) -> Iterator[tuple[str, str]]:
+    """Names of two of some curves that have values at the same places, which are the same."""
+    names, values = list(curves), pd.DataFrame(curves).to_numpy().T
+    known = ~np.isnan(values)
+    for k, name in enumerate(names):
+        others = np.flatnonzero((known[k + 1 :] == known[k]).all(axis=1)) + k + 1
+        if known[k].sum() < 2 or not len(others):
+            continue
+        own, theirs = values[k, known[k]], values[np.ix_(others, known[k])]
+        size = np.maximum(np.abs(own).max(), np.abs(theirs).max(axis=1))
+        same = np.abs(theirs - own).max(axis=1) <= SAME * size
+        yield from ((name, names[other]) for other in others[same])
 
 
 def _bands(figure: Figure) -> str:

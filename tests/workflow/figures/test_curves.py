@@ -153,3 +153,20 @@ def test_a_long_title_stays_beside_the_next(columns):
     short.set_fontsize(8.5)
     style.fit_titles(figure)
     assert short.get_fontsize() == 8.5
+
+
+def test_curves_that_lie_on_each_other_are_found():
+    """At the same places only, to a share of their size, whatever others there are."""
+    at = [0.0, 0.1, 0.2]
+    line = pd.Series([10.0, 5.0, 1.0], at)
+    found = curves._alike(
+        {
+            "one": line,
+            "shorter": line[:2],
+            "same": line * (1 + curves.SAME / 2),
+            "other": line + 1,
+            "elsewhere": pd.Series(line.to_numpy(), [0.0, 0.1, 0.3]),
+            "gap": line.where(line != 5.0),
+        }
+    )
+    assert list(found) == [("one", "same")]
