@@ -110,6 +110,26 @@ def test_a_map_of_a_muscle_is_right_between_its_states(built, folder):
         assert made.contraction_for(p, state["force"]) == pytest.approx(e, abs=4e-4)
 
 
+def test_200_newtons_hang_where_the_solid_has_them(folder, monkeypatch):
+    """Rows of a map by the solid, against isotonic states of its mesh; and of another mesh."""
+    monkeypatch.chdir(folder)
+    text = STUDY.replace("[0.02, 0.1, 0.2]", "[0.2, 0.3, 0.4, 0.5]")
+    text = text.replace("[0, 0.02, 0.04]", "{from: 0, to: 0.22, step: 0.02}")
+    Path("solid.yaml").write_text(text.replace("model: cylinder", "model: solid"))
+    study = load("solid.yaml")
+    builder, pressures = Builder(study, "quick"), (0.2, 0.3, 0.4, 0.5)
+    for pressure in pressures:
+        builder._solve(pressure)
+    made = builder.map()
+    path = LoadPath(kind="isotonic", held=200.0, stops=pressures)
+    alone = Store(study).solution(study.muscles["dmsp20"].case(path, "solid"))
+    published = (0.06218, 0.12664, 0.17018, 0.19788)
+    for row, pressure in enumerate(pressures):
+        found = made.contraction_for(pressure, 200.0)
+        assert found == pytest.approx(alone.states["contraction"][row], abs=1e-5)
+        assert found == pytest.approx(published[row], abs=3e-4)
+
+
 def test_its_error_is_that_of_states_solved_alone(built, folder, monkeypatch):
     monkeypatch.chdir(folder)
     study = load("study.yaml")
