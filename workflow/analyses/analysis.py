@@ -27,6 +27,7 @@ from solver.case import Case, digest
 from solver.record import Solution
 from workflow.data import paper
 from workflow.plan.plan import mesh_file
+from workflow.plan.promise import Promise
 from workflow.study.contents import Study
 from workflow.study.errors import StudyError, choices
 from workflow.study.study import load
@@ -48,11 +49,17 @@ class AnalysisCase:
     case: Case
     label: str
     tags: dict[str, str | float] = field(default_factory=dict)
+    promise: Promise | None = None  # of a climb, whose first case it is
+
+    @cached_property
+    def key(self) -> str:
+        """Of the case, or of the climb."""
+        return self.promise.key if self.promise else self.case.key
 
     @cached_property
     def mesh(self) -> str | None:
-        """File name of the mesh, None for a model without."""
-        return mesh_file(self.case)
+        """File name of the mesh, None for a model without and of a climb, which makes its own."""
+        return None if self.promise else mesh_file(self.case)
 
 
 @dataclass(frozen=True)

@@ -22,12 +22,13 @@ def evaluate(name: str, study_file: str, results: Path) -> None:
     """
     asked = analysis.named(name)
     solved = [
-        analysis.Solved(case, records.read_one(case.case.key, case.label)[1])
+        analysis.Solved(case, records.read_one(records.taken(case), case.label)[1])
         for case in analysis.cases(name, study_file)
     ]
     if asked.solves_cases:
-        labels = {each.asked.case.key: each.asked.label for each in solved}
-        solutions = {each.asked.case.key: each.solution for each in solved}
+        own = [each for each in solved if each.asked.promise is None]
+        labels = {each.asked.key: each.asked.label for each in own}
+        solutions = {each.asked.key: each.solution for each in own}
         failures.write_analysis(name, labels, solutions, results / "tables" / asked.failures)
     study = load(study_file)
     tables = asked.tabulated(study, solved)

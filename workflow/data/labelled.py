@@ -4,7 +4,7 @@
 /isometric   dims muscle, model, variant, contraction, pressure
 /isotonic    dims muscle, model, variant, load, pressure
     the numbers of a state that are no dimension, NaN where there is none; force_error: what its
-    mesh does to the force at most (workflow/plan/mesh_error.py), and so for other quantities;
+    mesh does to the force (workflow/plan/mesh_error.py), and so for other quantities;
     status: of the state (solver/status.py), not_asked where nobody asked for one; flags and note
     beside it (words with spaces between; a sentence), mostly empty;
     case, case_status, case_reason: of the curve (without the last dimension);
@@ -27,7 +27,12 @@ from solver.models import MODELS
 from solver.status import CaseStatus, StateStatus
 from workflow.data.states import CONTROLS, OF_CURVE, OF_MUSCLE, OF_STATE, STOP, Table, attributes
 
-EMPTY = {"status": StateStatus.NOT_ASKED.value, "flags": "", "note": ""}  # where no state is
+EMPTY = {  # where no state is
+    "status": StateStatus.NOT_ASKED.value,
+    "flags": "",
+    "note": "",
+    "error_by": "",
+}
 NO_CURVE = {"case": "", "case_status": CaseStatus.NOT_ASKED.value, "case_reason": ""}
 NO_VARIABLES = {"state", "point", "load", *EMPTY}  # of the columns of a state
 

@@ -1,28 +1,51 @@
 """Records of planned cases, read by name: a missing, foreign or damaged file is never data."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Protocol
 
 from solver import record
 from solver.case import Case
 from solver.record import Solution
 from solver.status import CaseStatus, StateStatus
+from workflow.data import settled
 from workflow.data.strain import judged
 from workflow.plan.plan import Place, Plan
+from workflow.plan.promise import Promise
 from workflow.study import folders
 from workflow.study.errors import StudyError
 
 FOLDER = folders.CASES
 
 
+class Asked(Protocol):
+    """A case that is asked for, or a climb."""
+
+    @property
+    def case(self) -> Case:
+        """What is solved, first."""
+
+    @property
+    def label(self) -> str:
+        """What people call it."""
+
+    @property
+    def promise(self) -> Promise | None:
+        """Of a climb."""
+
+
 @dataclass(frozen=True)
 class SolvedCase:
-    """A case with its record, and those of its stops that are wanted."""
+    """A case with its record, and those of its stops that are wanted.
+
+    ``finer`` is the same on a mesh twice as fine, where a scene asks for errors that are measured.
+    """
 
     case: Case
     solution: Solution
     stops: tuple[float, ...]
+    finer: Solution | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -57,7 +80,8 @@ def curves_of_scene(
 ) -> list[Curve]:
     """The curves of a scene, with the stops that it asks for (its cases may have more)."""
     places = plan.scenes.get(scene, {})
-    solved = read(plan, places.values(), folder, partial=partial)
+    finer = [plan.finer[key] for key in places.values() if key in plan.finer]
+    solved = read(plan, [*places.values(), *finer], folder, partial=partial)
     asked = plan.study.scenes[scene]
     return [
         _curve(
@@ -81,7 +105,9 @@ def _curve(
     """A curve, judged by what the materials of its muscle bear."""
     case, solution = solved[key]
     limits = plan.study.muscles[place.muscle].limits
-    return Curve(case, judged(case, solution, limits), stops, place)
+    finer = solved.get(plan.finer.get(key, ""))
+    own = judged(case, solution, limits)
+    return Curve(case, own, stops, place, finer=finer[1] if finer else None)
 
 
 def read(
@@ -100,6 +126,22 @@ def read(
         else read_one(key, plan.cases[key].label, folder)
         for key in dict.fromkeys(keys)
     }
+
+
+def taken(asked: Asked) -> str:
+    """The key of the record of a case, or of the one that a climb has come to.
+
+    Raises
+    ------
+    StudyError
+        If the climb has not ended.
+    """
+    if asked.promise is None:
+        return asked.case.key
+    end = settled.outcome(asked.promise.key)
+    if end is None:
+        raise StudyError(f"{asked.label}: its climb has not ended; run snakemake")
+    return str(end["record"])
 
 
 def not_solved(case: Case) -> tuple[Case, Solution]:

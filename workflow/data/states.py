@@ -37,7 +37,9 @@ CONTROLS = {  # that a path prescribes; of a state at a stop the decimals of the
 WITH_ERROR = {  # quantities, and what they are called
     "force": "force",
     "inner_diameter_inflated": "inner diameter",
+    "volume": "volume",
     "contraction": "contraction",
+    "pressure": "pressure, where the force is zero",
 }
 OF_STATE = {  # columns of a state: unit, long name
     "state": ("1", "number of the state in its record"),
@@ -46,9 +48,10 @@ OF_STATE = {  # columns of a state: unit, long name
     **VARIABLES,
     **SLEEVED,  # where there is a muscle with a sleeve
     **{
-        f"{name}_error": (VARIABLES[name][0], f"bound on the discretisation error of the {called}")
+        f"{name}_error": (VARIABLES[name][0], f"discretisation error of the {called}")
         for name, called in WITH_ERROR.items()
     },
+    "error_by": ("", "how the discretisation errors are known"),
     "status": ("", "status of the state"),
     "flags": ("", "flags of the state"),
     "note": ("", "note of the state"),
@@ -198,8 +201,10 @@ def state_rows(curves: Sequence[SolvedCase]) -> pd.DataFrame:
             columns[control] = np.where(known, prescribed, columns[control])
     for name in WITH_ERROR:
         columns[f"{name}_error"] = joined(
-            mesh_error.error(curve.case, curve.solution, name) for curve in curves
+            mesh_error.error(curve.case, curve.solution, name, curve.finer) for curve in curves
         )
+    by = [mesh_error.known_by(curve.case, curve.solution, curve.finer) for curve in curves]
+    columns["error_by"] = np.repeat(np.array(by, object), counts)
     columns["status"] = joined(
         ([s.value for s in found.state_status] for found in solutions), object
     )

@@ -6,6 +6,7 @@ from geometry.files import seal_of
 from solver import sources
 from solver.case import digest
 from workflow.data import paraview
+from workflow.data.settled import settled
 from workflow.plan.plan import Plan
 from workflow.run import damage, made
 from workflow.study import figure_needs
@@ -33,6 +34,7 @@ def files(plan: Plan, folder: Path) -> list[Path]:
 
 def why_drawn(plan: Plan, scene: str, folder: Path) -> str:
     """Why a figure will be drawn; empty if it is there and made of what there is."""
+    plan = settled(plan)
     keys = sorted(set(plan.scenes.get(scene, {}).values()))
     of = _made_of((plan.digest(scene), keys), keys)
     return _why(_files(scene, folder), _figure_sources(plan, scene), of)

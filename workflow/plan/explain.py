@@ -1,21 +1,29 @@
 """What ``python -m workflow explain`` says of every scene: its wishes, what it gets, and why."""
 
-from collections.abc import Iterator, Sequence
-from math import isnan
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from math import isfinite, isnan
+from typing import Any
 
 from solver.case import Case
 from solver.effects import EFFECTS
 from solver.load_path import PathKind
 from solver.models import MODELS
-from workflow.plan import effect_costs, model_choice
+from workflow.plan import effect_costs, like_muscles, model_choice
+from workflow.plan.judged import FOLLOWS, ZERO
+from workflow.plan.like_muscles import COVERAGE, Guess
 from workflow.plan.model_choice import Choice, Estimate
-from workflow.plan.plan import Place, Plan
+from workflow.plan.plan import Place, Plan, PlannedCase
+from workflow.plan.promise import Promise
 from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
 
+Outcomes = Callable[[str], Mapping[str, Any] | None]  # how a climb has ended, by its key
 
-def lines(plan: Plan) -> Iterator[str]:
-    """The whole text, line by line."""
+
+def lines(plan: Plan, outcome: Outcomes = lambda _: None) -> Iterator[str]:
+    """The whole text, line by line; ``outcome`` is asked for climbs that have ended."""
     yield f"effects: {effect_costs.origin()}"
+    if plan.promises:
+        yield f"like muscles: {like_muscles.origin()}"
     for name, places in plan.scenes.items():
         scene = plan.study.scenes[name]
         choice = model_choice.choose(plan.study, scene)
@@ -25,6 +33,12 @@ def lines(plan: Plan) -> Iterator[str]:
         yield f"  wants    {_wish(scene, choice)}"
         if scene.in_time:
             yield from _memories(plan, scene)
+        climbs = {key: plan.cases[key] for key in places.values() if key in plan.promises}
+        if climbs:
+            for key, climbed in climbs.items():
+                yield from _climb(climbed, outcome(key))
+            yield from _of_paper(plan, scene)
+            continue
         yield f"  regimes  {', '.join(model_choice.regimes(plan.study, scene))}"
         yield from _models(scene, choice, model_choice.estimates(plan.study, scene))
         for model, case in cases.items():
@@ -115,6 +129,68 @@ def _estimate(estimate: Estimate) -> str:
         return "not measured"
     lost = "; some states are lost or not measured" if estimate.missing else ""
     return f"error {100 * estimate.error:.2g} %, {estimate.seconds:.2g} s a curve{lost}"
+
+
+def _climb(asked: PlannedCase, end: Mapping[str, Any] | None) -> Iterator[str]:
+    """What like muscles say of every rung; and what was measured, if the climb has ended."""
+    promise = asked.promise
+    assert promise is not None
+    called = {FOLLOWS: asked.case.path.kind.follows, ZERO: asked.case.path.kind.zero_force}
+    judged = ", ".join(called.get(name, name).replace("_", " ") for name in promise.judged)
+    yield (
+        f"  climb    {asked.label}: {judged} within {100 * promise.tolerance:g} % of the largest "
+        "value along the curve, of every state that a refined solid has"
+    )
+    for name, known in promise.guesses.items():
+        mark = ">" if name == (end["rung"] if end else promise.start) else " "
+        lacks = ", ".join(_left_out(promise, name))
+        without = f"; leaves out {lacks}" if lacks else ""
+        said = "no muscles of the table are like it" if known is None else _guessed(known)
+        yield f"    {mark} {name:15} {said}{without}"
+        if end and (found := end["verdicts"][name])["by"].startswith("measured"):
+            yield f"      {'':15} {found['by']}: {_share(found['error'])}"
+    if end is None:
+        yield f"    begins on {promise.start}, and climbs until it is proved"
+        return
+    held = "is proved" if end["holds"] else "is the best there is, and not proved"
+    yield f"    {end['rung']} {held}: {_share(end['error'])}, {end['by']}"
+    tried = ", ".join(f"{name} at {count} states" for name, count in end["tried"]) or "nothing"
+    yield f"    solved {tried}; {sum(end['seconds'].values()):.2g} s of the processor"
+
+
+def _left_out(promise: Promise, name: str) -> list[str]:
+    """Effects that better models of a curve carry and this one does not."""
+    carried = set(promise.rungs[name].active_effects)
+    names = list(promise.rungs)
+    better = {e for n in names[names.index(name) :] for e in promise.rungs[n].active_effects}
+    return [effect for effect in EFFECTS if effect in better - carried]
+
+
+def _guessed(known: Guess) -> str:
+    lost = f", states lost on {100 * known.lost:.0f} % of those nearest" if known.lost else ""
+    return (
+        f"error {_share(known.median)}, {100 * COVERAGE:g} % of {known.count} like muscles at most "
+        f"{_share(known.high)}{lost}; {known.seconds:.2g} s a curve"
+    )
+
+
+def _share(error: float) -> str:
+    return f"{100 * error:.2g} %" if isfinite(error) else "not known" if isnan(error) else "lost"
+
+
+def _of_paper(plan: Plan, scene: Scene) -> Iterator[str]:
+    """What else is left out: measured on the muscle of the paper alone."""
+    assert scene.path is not None
+    known, name = effect_costs.load(), PathKind(scene.kind).follows
+    found = [
+        f"{effect} {_share(value)}"
+        for regime, path, effect in known
+        if (regime, path) == ("normal", scene.kind)
+        and effect in EFFECTS
+        and effect not in ("end_caps", "cap_geometry")
+        and not isnan(value := getattr(known[regime, path, effect], name))
+    ]
+    yield f"  effects  leaving out, on the paper's muscle and not this one: {', '.join(found)}"
 
 
 def _effects(model: str, case: Case, scene: Scene) -> Iterator[str]:

@@ -1,18 +1,21 @@
-"""How far the mesh of a curve is from one that is infinitely fine: measured once, looked up since.
+"""How far the mesh of a curve is from an infinitely fine one, at every state; how that is known.
 
-``mesh_error.csv`` beside this module holds, for every mesh of the scenes, the largest errors
-that the analysis of accuracy has found on any of their curves, as shares of the largest value of
-the curve:
+- Measured here: by the same curve on a mesh twice as fine, where a scene asks for that
+  (``errors: measured``). Of second order the coarser mesh is off by 4/3 of the difference;
+  1.5 times that is reported, as muscles that are pushed far converge more slowly.
+- Estimated from like muscles (workflow/plan/like_muscles.py), on the meshes of the ladder.
+- Not known, otherwise. ``mesh_error.csv`` beside this module has what the analysis of accuracy has
+  found on the muscle of the paper: the largest errors on any of its curves, as shares of the
+  largest value. It serves muscles of that size alone, on meshes that the ladder has not, and the
+  choice of a mesh (workflow/plan/model_choice.py):
 
     snakemake --cores 2 accuracy && python -m workflow bounds
 
-writes it anew; a test says when it has to be. A finer mesh of a family has the error of the coarser
-one as its bound. For another muscle it is an estimate; with that muscle in a scene, the study gives
-the error of its own curves.
+None of them is a bound.
 """
 
 import csv
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -25,6 +28,9 @@ from solver.effects import Effects
 from solver.models import MODELS
 from solver.numerics import KINDS, Numerics
 from solver.record import Solution
+from workflow.plan.effect_costs import MESHES
+from workflow.plan.judged import FOLLOWS, QUANTITIES, scale
+from workflow.plan.like_muscles import mesh_errors
 
 FILE = Path(__file__).with_suffix(".csv")
 DATA = ("workflow/plan/mesh_error.csv",)
@@ -35,37 +41,113 @@ PART = {  # of the numerics, that is the mesh, of models whose mesh is a grading
     for name, model in MODELS.items()
     if model.mesh and issubclass(KINDS[model.mesh], Grading)
 }
+PAPER = (20, 2, 300)  # mm: diameter, wall and length of the muscle that was measured
+OF_PAIR = 4 / 3 * 1.5  # error of a mesh by the difference of one twice as fine, and for safety
+CONTROLS = ("contraction", "pressure")
+OF_VARIABLE = {variable: quantity for quantity, variable in QUANTITIES.items()}
 ERRORS = {"force": "force_error", "inner_diameter_inflated": "diameter_error"}
 
 
 @dataclass(frozen=True)
 class Bound:
-    """Largest errors found on a mesh, as shares."""
+    """Largest errors found on a mesh of the muscle of the paper, as shares."""
 
     refinement: int
     errors: dict[str, float]
 
 
-def error(case: Case, solution: Solution, variable: str) -> NDArray[np.float64]:
+def error(
+    case: Case, solution: Solution, variable: str, finer: Solution | None = None
+) -> NDArray[np.float64]:
     """Discretisation error of a variable at every state of a curve, in its unit.
 
-    Known for force and inner diameter, and for the contraction under a load. 0 for models without a
-    mesh; NaN where nothing is known of the mesh or the variable.
+    Of force, contraction, pressure, inner diameter and volume; of a control that is prescribed NaN.
+    0 for models without a mesh; NaN where nothing is known. ``finer`` is the same curve on a mesh
+    twice as fine.
     """
     values = solution.states[variable]
     if MODELS[case.model].mesh is None:
         return np.where(np.isfinite(values), 0.0, np.nan)
-    if variable == "contraction" == case.path.kind.follows:
+    if variable in CONTROLS and variable != case.path.kind.follows:
+        return _of_zero_force(case, solution, variable, finer)
+    if variable == "force" != case.path.kind.follows:  # under a load: by that of the contraction
         per_contraction = np.abs(solution.states["stiffness"]) * case.muscle.length
-        return np.asarray(error(case, solution, "force") / per_contraction)
-    share = _share(case, variable)
-    known = values[np.isfinite(values)]
-    largest = float(np.max(np.abs(known))) if known.size else np.nan
-    return np.where(np.isfinite(values), share * largest, np.nan)
+        return np.asarray(error(case, solution, "contraction", finer) * per_contraction)
+    if finer is not None:
+        return OF_PAIR * np.abs(values - finer.states[variable])
+    quantity = OF_VARIABLE.get(variable, FOLLOWS)
+    if rung := rung_of(case):
+        share, count = mesh_errors(case, solution, rung, quantity)
+        if count and np.isfinite(share).any():
+            return share * scale(case, solution, quantity)
+    share = _share(case, "force" if quantity == FOLLOWS else variable)
+    return np.where(np.isfinite(values), share * scale(case, solution, quantity), np.nan)
+
+
+def known_by(case: Case, solution: Solution, finer: Solution | None = None) -> str:
+    """How the errors of a curve are known."""
+    if MODELS[case.model].mesh is None:
+        return "no mesh"
+    if finer is not None:
+        return "measured here"
+    if rung := rung_of(case):
+        share, count = mesh_errors(case, solution, rung, FOLLOWS)
+        if count and np.isfinite(share).any():
+            return f"estimated from {count} like muscles"
+    known = np.isfinite(_share(case, "force"))
+    return "estimated from the curves of the paper's muscle" if known else "not known"
+
+
+def rung_of(case: Case) -> str:
+    """The rung of the ladder whose mesh a case has; empty if it has another, or other effects."""
+    if case.model not in PART or case.path.by_way:
+        return ""
+    switches = MODELS[case.model].switches
+    if any(getattr(case.effects, name) != getattr(Effects(), name) for name in switches):
+        return ""
+    for mesh, settings in MESHES.items():
+        numerics = replace(Numerics(), **settings).of(case.muscle)
+        parts = [PART[case.model], *(["clamp"] if case.clamped else [])]
+        if all(getattr(numerics, part) == getattr(case.numerics, part) for part in parts):
+            return case.model if mesh == "default" else f"{case.model}, {mesh}"
+    return ""
+
+
+def twice_as_fine(case: Case) -> Case | None:
+    """The same curve on a mesh twice as fine; None for a model whose mesh is no grading."""
+    if case.model not in PART:
+        return None
+    part = PART[case.model]
+    mesh = getattr(case.numerics, part)
+    finer = replace(mesh, refinement=2 * mesh.refinement)
+    return replace(case, numerics=replace(case.numerics, **{part: finer}), fields_at=())
+
+
+def _of_zero_force(
+    case: Case, solution: Solution, variable: str, finer: Solution | None
+) -> NDArray[np.float64]:
+    """Of the control that is swept, which is not prescribed where the force is zero."""
+    found, stops = np.full(case.path.states, np.nan), len(case.path.stops)
+    if variable != case.path.kind.swept.variable or not case.path.zero_force:
+        return found
+    if finer is not None:
+        off = solution.states[variable][stops] - finer.states[variable][stops]
+        found[stops] = OF_PAIR * abs(off)
+        return found
+    states = solution.states
+    slope = {
+        "pressure": np.abs(states["force_by_pressure"]),
+        "contraction": np.abs(states["stiffness"]) * case.muscle.length,
+    }[variable]
+    found[stops] = (error(case, solution, case.path.kind.follows) / slope)[stops]
+    return found
 
 
 def _share(case: Case, variable: str) -> float:
-    """From the mesh of the case or the next coarser one of its family."""
+    """Of the muscle of the paper: by the mesh of the case or the next coarser one of its family."""
+    muscle = case.muscle
+    if (muscle.inner_diameter, muscle.wall_thickness, muscle.length) != PAPER:
+        return np.nan
     if case.model not in PART:
         return np.nan
     return share_of(case.model, case.effects, case.numerics, variable)

@@ -63,6 +63,8 @@ def _rungs() -> Iterator[Rung]:
 
 
 RUNGS = {rung.name: rung for rung in _rungs()}
+CLIMBED = ("cylinder", "membrane", "solid, coarser", "solid, finer", "solid")  # by promise.py
+NO_CLIMB = {"stress", "deformed_shape", "sheet", "dynamic_stiffness"}
 DISCRETE = "discrete_threads"
 SMEARED = "isobaric", DISCRETE  # path and effect: measured at constant pressure only
 
@@ -112,7 +114,9 @@ def choose(study: Study, scene: Scene, measured: MeasuredEffects | None = None) 
     variants = {
         label: made
         for name in scene.variants
-        for label, made in [_variant(study.variants[name], name, scene, chosen)]
+        for label, made in [
+            _variant(study.variants[name], name, scene, chosen.rung.mesh if chosen else "default")
+        ]
     }
     return Choice(models, variants, tolerance, weighed, chosen)
 
@@ -129,6 +133,38 @@ def estimates(
 def is_enough(estimate: Estimate, tolerance: float) -> bool:
     """Whether a rung is exact enough, and its mesh fine enough."""
     return estimate.error <= tolerance and estimate.mesh_error <= OF_MESH * tolerance
+
+
+def promised(study: Study, scene: Scene) -> dict[str, tuple[Rung, ...]]:
+    """Of a scene that leaves its model open the rungs that each muscle may climb, cheapest first.
+
+    Empty where there is no climb: models are named, curves are in time, fields or sheets are asked
+    for, an effect is forced that one rung alone has. There the choice is ``choose``'s.
+    """
+    if scene.models is not None or scene.path is None or scene.in_time or scene.frequency:
+        return {}
+    if NO_CLIMB & set(scene.quantities):
+        return {}
+    asked = [
+        rung for rung in RUNGS.values() if rung.name in CLIMBED and not refusal(rung.model, scene)
+    ]
+    found = {name: tuple(r for r in asked if _may_be(study, name, r)) for name in scene.muscles}
+    return found if all(len(rungs) > 1 for rungs in found.values()) else {}
+
+
+def _may_be(study: Study, name: str, rung: Rung) -> bool:
+    """Whether a rung can be of a muscle at all."""
+    made, model = study.muscles[name], MODELS[rung.model]
+    if made.muscle.braid is None:
+        return not model.needs_braid
+    if model.frame and not made.rubber.has_frame(model.frame):
+        return False
+    return not BRAIDS[model.braids](made.muscle.braid)
+
+
+def on_rung(study: Study, scene: Scene, name: str, rung: Rung) -> tuple[str, Variant]:
+    """A variant of a scene on a rung, and its label in the dataset."""
+    return _variant(study.variants[name], name, scene, rung.mesh)
 
 
 def switched(effects: Effects, wanted: Mapping[str, str]) -> Effects:
@@ -299,14 +335,12 @@ def refusal(model: str, scene: Scene) -> str:
     return ""
 
 
-def _variant(
-    variant: Variant, name: str, scene: Scene, chosen: Estimate | None
-) -> tuple[str, Variant]:
+def _variant(variant: Variant, name: str, scene: Scene, mesh: str) -> tuple[str, Variant]:
     """A variant with what scene and planner add to it, and its label in the dataset."""
     label, effects, numerics = name, switched(variant.effects, scene.switches), variant.numerics
     if scene.effects:
         label += "".join(f"_{effect}_{state}" for effect, state in sorted(scene.effects.items()))
-    if chosen is not None and chosen.rung.mesh != "default":
-        label += f"_{chosen.rung.mesh}"
-        numerics = replace(numerics, **MESHES[chosen.rung.mesh])
+    if mesh != "default":
+        label += f"_{mesh}"
+        numerics = replace(numerics, **MESHES[mesh])
     return label, Variant(effects=effects, numerics=numerics)

@@ -6,9 +6,10 @@ solved once, however many figures show it.
 """
 
 import json
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +20,14 @@ from solver.case import Case, canonical, digest
 from solver.load_path import ZERO_FORCE, LoadPath, PathKind
 from solver.models import MODELS
 from workflow.plan import model_choice
+from workflow.plan.judged import of_scene
+from workflow.plan.mesh_error import twice_as_fine
+from workflow.plan.promise import Promise
 from workflow.plan.sheet_stops import stops_to
 from workflow.study import in_time
 from workflow.study.contents import Study, Variant
 from workflow.study.errors import Findings, StudyError
-from workflow.study.schema import HELD_KEY, SHEET, SWEPT_KEY, Scene
+from workflow.study.schema import HELD_KEY, MEASURED, SHEET, SWEPT_KEY, Scene
 from workflow.study.study import load
 
 FIELDS = {"stress", "deformed_shape"}
@@ -66,22 +70,36 @@ def mesh_file(case: Case) -> str | None:
 
 @dataclass(frozen=True)
 class PlannedCase:
-    """A case, the places that it fills and the scenes that ask for it; both sorted."""
+    """A case, the places that it fills and the scenes that ask for it; both sorted.
+
+    With a ``promise`` it is the first case of a climb; which one fills the places is known when the
+    climb has ended (workflow/data/settled.py). Without a place it is there for the error of another
+    one, which is called ``of``.
+    """
 
     case: Case
     places: tuple[Place, ...]
     scenes: tuple[str, ...]
+    promise: Promise | None = None
+    of: str = ""
+
+    @cached_property
+    def key(self) -> str:
+        """Of the case, or of the climb."""
+        return self.promise.key if self.promise else self.case.key
 
     @property
     def label(self) -> str:
         """What a user calls this case."""
+        if not self.places:
+            return f"{self.of}, twice as fine"
         others = len(self.places) - 1
         return f"{self.places[0]}{f' (and {others} more)' if others else ''}"
 
     @cached_property
     def mesh(self) -> str | None:
-        """File name of the mesh, None for a model without."""
-        return mesh_file(self.case)
+        """File name of the mesh, None for a model without and of a climb, which makes its own."""
+        return None if self.promise else mesh_file(self.case)
 
 
 @dataclass(frozen=True)
@@ -94,6 +112,7 @@ class Plan:
     meshes : specification by file name
     scenes : of every scene that has cases, the key of the case at each of its places
     shown : specification of the whole muscles that scenes without cases show, by name
+    finer : by case the one on a mesh twice as fine by which its errors are measured
     """
 
     study: Study
@@ -101,10 +120,18 @@ class Plan:
     meshes: dict[str, str]
     scenes: dict[str, dict[Place, str]]
     shown: dict[str, str]
+    finer: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def promises(self) -> dict[str, Promise]:
+        """Climbs by key."""
+        return {key: asked.promise for key, asked in self.cases.items() if asked.promise}
 
     def cases_of(self, scene: str) -> dict[str, PlannedCase]:
-        """The cases of a scene by key."""
-        return {key: self.cases[key] for key in sorted({*self.scenes.get(scene, {}).values()})}
+        """The cases of a scene by key, and those by which their errors are measured."""
+        own = {*self.scenes.get(scene, {}).values()}
+        more = {self.finer[key] for key in own if key in self.finer}
+        return {key: self.cases[key] for key in sorted(own | more)}
 
     def digest(self, scene: str | None = None) -> str:
         """Digest of all that a scene (None: the dataset) takes from the study but its cases."""
@@ -125,6 +152,7 @@ class _Wish:
     """What scenes want of one curve."""
 
     case: Case
+    promise: Promise | None = None
     stops: set[float] = field(default_factory=set)
     fields_at: set[float] = field(default_factory=set)
     frequencies: set[float] = field(default_factory=set)
@@ -151,7 +179,10 @@ class _Wish:
         if (stops, self.zero_force, *found.values()) != known:
             path = replace(path, stops=stops, zero_force=self.zero_force)
             case = replace(case, path=path, **found)
-        return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)))
+        promise = self.promise
+        if promise is not None:
+            promise = promise.with_stops(path.stops, zero_force=path.zero_force)
+        return PlannedCase(case, tuple(sorted(self.places)), tuple(sorted(self.scenes)), promise)
 
 
 def read(path: Path | str, *checks: Callable[[Study], Iterable[StudyError]]) -> Plan:
@@ -193,24 +224,29 @@ def plan(study: Study, findings: Findings | None = None) -> Plan:
         if not study.variants.keys() >= {*scene.variants}:
             continue
         with found.gathering():
-            for place, case in _curves(study, name, scene, found):
-                curve = _identity(case)
+            for place, case, promise in _curves(study, name, scene, found):
+                curve = _identity(case, promise)
                 if by_place.setdefault(place, curve) != curve:
                     allowed = f"names that no scene's effects or mesh make: {place} is two curves"
                     keys = ("scenes", name, "variants")
                     raise study.source.refuse(keys, list(scene.variants), allowed)
-                wishes.setdefault(curve, _Wish(case)).add(name, place, case)
+                wishes.setdefault(curve, _Wish(case, promise)).add(name, place, case)
                 places.setdefault(name, {})[place] = curve
     if findings is None:
         found.say()
     planned = {curve: wish.planned() for curve, wish in wishes.items()}
     ordered = sorted(planned.values(), key=lambda entry: entry.places)
+    cases = {entry.key: entry for entry in ordered}
+    finer = dict(_finer(study, ordered))
+    for entry in finer.values():
+        cases.setdefault(entry.key, entry)
     return Plan(
         study=study,
-        cases={entry.case.key: entry for entry in ordered},
-        meshes={e.mesh: spec for e in ordered if e.mesh and (spec := e.case.mesh_spec())},
+        cases=cases,
+        meshes={e.mesh: spec for e in cases.values() if e.mesh and (spec := e.case.mesh_spec())},
+        finer={key: entry.key for key, entry in finer.items()},
         scenes={
-            name: {place: planned[curve].case.key for place, curve in sorted(found.items())}
+            name: {place: planned[curve].key for place, curve in sorted(found.items())}
             for name, found in places.items()
         },
         shown={
@@ -223,6 +259,15 @@ def plan(study: Study, findings: Findings | None = None) -> Plan:
     )
 
 
+def _finer(study: Study, planned: Iterable[PlannedCase]) -> Iterator[tuple[str, PlannedCase]]:
+    """By case the one by which its errors are measured, where a scene asks for that."""
+    for entry in planned:
+        asking = [name for name in entry.scenes if study.scenes[name].errors == MEASURED]
+        finer = twice_as_fine(entry.case) if asking and not entry.promise else None
+        if finer is not None:
+            yield entry.key, PlannedCase(finer, (), tuple(asking), of=entry.label)
+
+
 def _whole(muscle: Muscle) -> str:
     """Specification of a muscle in three dimensions, for ``python -m geometry``."""
     return json.dumps({"kind": "whole", "muscle": muscle.as_dict()}, sort_keys=True)
@@ -230,9 +275,12 @@ def _whole(muscle: Muscle) -> str:
 
 def _curves(
     study: Study, name: str, scene: Scene, findings: Findings
-) -> Iterator[tuple[Place, Case]]:
+) -> Iterator[tuple[Place, Case, Promise | None]]:
     """What one scene asks for; curves that cannot be solved are noted."""
     if scene.path is None:
+        return
+    if rungs := model_choice.promised(study, scene):
+        yield from _climbs(study, name, scene, rungs, findings)
         return
     choice = model_choice.choose(study, scene)
     _check_models(study, name, scene, choice)
@@ -242,7 +290,32 @@ def _curves(
                 for held in scene.held:
                     for place, path in _paths(study, name, scene, muscle, model, label, held):
                         with findings.gathering():
-                            yield place, _case(study, name, scene, place, variant, path)
+                            yield place, _case(study, name, scene, place, variant, path), None
+
+
+def _climbs(
+    study: Study,
+    name: str,
+    scene: Scene,
+    rungs: Mapping[str, tuple[model_choice.Rung, ...]],
+    findings: Findings,
+) -> Iterator[tuple[Place, Case, Promise]]:
+    """The curves of a scene that leaves its model open, on every rung that they may climb."""
+    tolerance = model_choice.TOLERANCE if scene.tolerance is None else scene.tolerance
+    judged = of_scene(scene.quantities)
+    for muscle, variant, held in product(scene.muscles, scene.variants, scene.held):
+        with findings.gathering():
+            cases, labels = {}, {}
+            for rung in rungs[muscle]:
+                label, made = model_choice.on_rung(study, scene, variant, rung)
+                for place, path in _paths(study, name, scene, muscle, rung.model, label, held):
+                    cases[rung.name] = _case(study, name, scene, place, made, path)
+                    labels[rung.name] = place
+            promise = Promise(tolerance, judged, cases)
+            start = promise.start
+            more = "".join(f"_{each}" for each in judged[1:])
+            pending = f"{labels[start].variant}_within_{tolerance:g}{more}"
+            yield replace(labels[start], variant=pending), cases[start], promise
 
 
 def _paths(
@@ -354,8 +427,11 @@ def _check_mesh(study: Study, place: Place, variant: Variant) -> None:
         raise source.refuse(keys, getattr(muscle, key), allowed) from None
 
 
-def _identity(case: Case) -> str:
-    """What a case has in common with all that can be merged with it."""
+def _identity(case: Case, promise: Promise | None = None) -> str:
+    """What a case, or a climb, has in common with all that can be merged with it."""
+    if promise is not None:
+        cases = [_identity(each) for each in promise.rungs.values()]
+        return repr((promise.tolerance, promise.judged, cases))
     values = case.as_dict()
     values.pop("fields_at", None)
     if values.pop("frequencies", None):

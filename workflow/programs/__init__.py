@@ -9,6 +9,7 @@ import argparse
 from collections.abc import Collection
 from pathlib import Path
 
+from workflow.data.settled import settled
 from workflow.plan.plan import Plan, read
 from workflow.study.errors import StudyError, choices
 from workflow.study.folders import DEFAULT, check_owner, of_study
@@ -51,3 +52,8 @@ def entries(given: argparse.Namespace, there: Collection[str], what: str) -> lis
 def plan_of(given: argparse.Namespace) -> Plan:
     """The plan of the study file that was given."""
     return read(given.study)
+
+
+def settled_plan_of(given: argparse.Namespace) -> Plan:
+    """The same where climbs have ended: the cases that they have come to in their place."""
+    return settled(plan_of(given))

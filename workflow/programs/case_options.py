@@ -22,4 +22,4 @@ def cases_of(given: argparse.Namespace) -> Mapping[str, PlannedCase | AnalysisCa
     if given.name is None:
         plan = plan_of(given)
         return plan.cases if given.scene is None else plan.cases_of(given.scene)
-    return {asked.case.key: asked for asked in analysis.cases(given.name, str(given.study))}
+    return {asked.key: asked for asked in analysis.cases(given.name, str(given.study))}

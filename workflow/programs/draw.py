@@ -9,7 +9,7 @@ from pathlib import Path
 
 from geometry.files import atomic_write
 from workflow.figures import update
-from workflow.programs import add_study, plan_of
+from workflow.programs import add_study, settled_plan_of
 from workflow.study.errors import StudyError
 from workflow.study.folders import of_study
 
@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Draw what is not there or was made of something else; one that fails stops no other one."""
-    plan, folder = plan_of(given), of_study(given.study)
+    plan, folder = settled_plan_of(given), of_study(given.study)
     names = [given.scene] if given.scene else update.scenes(plan)
     tasks = {name: partial(update.figures, plan, name, folder) for name in names}
     if not given.scene:

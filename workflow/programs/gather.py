@@ -7,7 +7,7 @@ from workflow.analyses import additions
 from workflow.analyses.registry import ANALYSES
 from workflow.data import bench, dataset, deviation, records, strain, tidy
 from workflow.data.states import Table
-from workflow.programs import add_study, plan_of, results_of
+from workflow.programs import add_study, results_of, settled_plan_of
 from workflow.report.explorer import page
 from workflow.run import failures
 
@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Read all records of the study and write what is made of all."""
-    plan = plan_of(given)
+    plan = settled_plan_of(given)
     curves = records.curves_of_study(plan)
     results = results_of(given)
     tables = results / "tables"

@@ -10,7 +10,7 @@ from solver.rubber import default
 from workflow.analyses.registry import ANALYSES
 from workflow.data import records
 from workflow.plan.plan import Plan
-from workflow.programs import add_study, plan_of
+from workflow.programs import add_study, settled_plan_of
 from workflow.study import library
 from workflow.study.contents import StudiedMuscle
 from workflow.study.study import load_library
@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Print it."""
-    for line in lines(plan_of(given)):
+    for line in lines(settled_plan_of(given)):
         print(line)
     return 0
 

@@ -8,7 +8,7 @@ from solver.status import CaseStatus
 from workflow.data import dataset, records, tidy
 from workflow.data.states import Table
 from workflow.figures import figure, update
-from workflow.programs import add_study, plan_of, results_of
+from workflow.programs import add_study, results_of, settled_plan_of
 from workflow.report.explorer import page
 from workflow.run import failures
 
@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Write them; cases without a record are not_solved. Status 1 if a figure cannot be drawn."""
-    plan, folder = plan_of(given), results_of(given) / "partial"
+    plan, folder = settled_plan_of(given), results_of(given) / "partial"
     curves = records.curves_of_study(plan, partial=True)
     solutions = {curve.key: curve.solution for curve in curves}
     missing = sum(found.status is CaseStatus.NOT_SOLVED for found in solutions.values())

@@ -8,7 +8,7 @@ from solver.status import CaseStatus
 from workflow.data import records
 from workflow.data.states import SceneData
 from workflow.plan.plan import Plan
-from workflow.programs import add_study, plan_of
+from workflow.programs import add_study, settled_plan_of
 from workflow.study.errors import StudyError, choices
 from workflow.study.schema import HELD_KEY, SHOWN, SWEPT_KEY, TIMED, Scene
 
@@ -94,7 +94,7 @@ def run(given: argparse.Namespace) -> int:
             raise StudyError(f"--{axis} {asked}: no such quantity; {choices(asked, known)}")
     if given.output.suffix not in ENDINGS:
         raise StudyError(f"--output {given.output}: the ending is {', '.join(ENDINGS)}")
-    plan = plan_of(given)
+    plan = settled_plan_of(given)
     data = chosen(plan, given)
     from workflow.figures import general, style
 

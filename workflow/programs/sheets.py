@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from workflow.answers import sheet, sheet_files
-from workflow.programs import add_study, plan_of
+from workflow.programs import add_study, settled_plan_of
 from workflow.report import html_page
 
 
@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Write them; status 1 if the balance of energy of one does not close."""
-    plan = plan_of(given)
+    plan = settled_plan_of(given)
     found = sheet_files.of_scene(plan, given.scene)
     said = sheet.warnings(found)
     for line in said:

@@ -65,7 +65,7 @@ def code(*modules):
 
 def cases_of_analysis(name):
     """Cases of an analysis by key; making them takes a second, so not before it is asked for."""
-    return {asked.case.key: asked for asked in analysis.cases(name, STUDY)}
+    return {asked.key: asked for asked in analysis.cases(name, STUDY)}
 
 
 def cases_asked(asked):

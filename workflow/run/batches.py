@@ -5,6 +5,9 @@ other. Of a batch those cases are solved that have no right record: one that is 
 by the sources there are. Their meshes are made first, each once. Whatever happens to the process
 that does a case, the others go on.
 
+A curve whose model is not known before is a climb (workflow/run/climbs.py): one task, which solves
+what it needs. The rungs that it has tried are records like others, which nobody asks for.
+
 The log of a batch has a line when a case begins and one when it ends; workflow/run/progress.py
 reads it while it grows.
 """
@@ -15,6 +18,7 @@ import sys
 import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from signal import Signals
@@ -28,7 +32,10 @@ from solver.case import Case, digest
 from solver.freefem import Limits
 from solver.job import Job, say
 from solver.models import MODELS
-from workflow.run import damage, made, pool
+from solver.record import Solution
+from workflow.plan.plan import mesh_file
+from workflow.plan.promise import Promise
+from workflow.run import climbs, damage, made, pool
 from workflow.run.pool import Task
 from workflow.study.folders import CASES, COST, LOGS, MESHES
 
@@ -48,8 +55,33 @@ class Planned(Protocol):
         """What people call it."""
 
     @property
+    def key(self) -> str:
+        """Of the case, or of the climb."""
+
+    @property
     def mesh(self) -> str | None:
         """File name of its mesh."""
+
+    @property
+    def promise(self) -> Promise | None:
+        """Of a climb, whose first case it is."""
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """A case of a climb."""
+
+    case: Case
+    label: str
+    promise: None = None
+
+    @property
+    def key(self) -> str:
+        return self.case.key
+
+    @property
+    def mesh(self) -> str | None:
+        return mesh_file(self.case)
 
 
 Cases = Mapping[str, Planned]  # by key
@@ -71,16 +103,25 @@ def _number(key: str, batches: int) -> int:
 
 def wanted(cases: Cases) -> str:
     """Digest of what the records of some cases must be."""
-    return digest(repr(sorted((key, _code(asked.case)) for key, asked in cases.items())))
+    codes = {
+        key: climbs.code(p) if (p := asked.promise) else _code(asked.case)
+        for key, asked in cases.items()
+    }
+    return digest(repr(sorted(codes.items())))
 
 
 def files_of(key: str, asked: Planned) -> list[Path]:
-    """Record and mesh of a case."""
+    """Record and mesh of a case; how a climb has ended, and the record of the rung that it took."""
+    if asked.promise:
+        taken = climbs.taken(asked.promise)
+        return [climbs.path_of(key), *([_record(taken.key)] if taken else [])]
     return [_record(key), *([MESHES / asked.mesh] if asked.mesh else [])]
 
 
 def why_solved(key: str, asked: Planned) -> str:
     """Why a case will be solved; empty if its record is right."""
+    if asked.promise:
+        return _why_climbed(asked.promise, asked.label)
     if wrong := damage.at_a_glance(_record(key)):
         return "no record" if wrong == "missing" else f"its record is {wrong}"
     try:
@@ -88,6 +129,15 @@ def why_solved(key: str, asked: Planned) -> str:
     except record.NoRecord:
         return "no readable record"
     return made.why(code, _sources(asked.case))
+
+
+def _why_climbed(promise: Promise, label: str) -> str:
+    """Why a climb is done; empty if it has ended, and the record that it has come to is right."""
+    if why := climbs.why(promise):
+        return why
+    taken = climbs.taken(promise)
+    assert taken is not None  # else there is a reason
+    return why_solved(taken.key, _Tried(taken, label))
 
 
 def why_meshed(asked: Planned) -> str:
@@ -123,8 +173,9 @@ def solve(cases: Cases, cores: int, limits: Limits, log: Path) -> int:
     """
     tasks = _tasks(cases, limits)
     for asked in cases.values():
-        made.keep(_sources(asked.case))
-    if any(task.name not in cases for task in tasks):
+        for case in asked.promise.rungs.values() if asked.promise else [asked.case]:
+            made.keep(_sources(case))
+    if any(task.name not in cases or cases[task.name].promise for task in tasks):
         with suppress(ImportError, OSError):  # the mesher says so
             import gmsh  # noqa: F401  once, for all processes
     for folder in (log.parent, MESHES):
@@ -150,8 +201,9 @@ def stamp(cases: Cases) -> str:
     """What a batch leaves: digest of its records, so that only other records mean other work."""
     found, count = hashlib.sha256(), 0
     for key in sorted(cases):
-        if _record(key).is_file():
-            found.update(key.encode() + _record(key).read_bytes())
+        files = [p for p in files_of(key, cases[key]) if p.parent != MESHES]
+        if all(path.is_file() for path in files):
+            found.update(key.encode() + b"".join(path.read_bytes() for path in files))
             count += 1
     return f"{count} of {len(cases)} cases have a record; digest {found.hexdigest()}\n"
 
@@ -165,8 +217,11 @@ def _tasks(cases: Cases, limits: Limits) -> list[Task]:
         case = cases[key].case
         return MODELS[case.model].rank, case.path.states
 
+    curves: dict[str, str] = {}  # the last climb on each, by the best case of it
     for key in sorted(cases, key=length, reverse=True):
         asked = cases[key]
+        if asked.promise is not None:
+            continue
         if asked.mesh and asked.mesh not in meshed and why_meshed(asked):
             meshed.add(asked.mesh)
             label = f"the mesh of {asked.label}"
@@ -174,7 +229,38 @@ def _tasks(cases: Cases, limits: Limits) -> list[Task]:
         if key in solved:
             do = partial(_solve, key, asked, limits)
             tasks.append(Task(name=key, label=asked.label, do=do, after=asked.mesh))
+    # After what they may find solved; of those on one curve the loosest first, one after the other.
+    climbed = {key: p for key in solved if (p := cases[key].promise)}
+    for key, promise in sorted(climbed.items(), key=lambda each: (-each[1].tolerance, each[0])):
+        do, label = partial(_climb, key, cases[key], limits), cases[key].label
+        curve = next(reversed(promise.rungs.values())).key
+        tasks.append(Task(name=key, label=label, do=do, after=curves.get(curve)))
+        curves[curve] = key
     return tasks
+
+
+def _climb(key: str, asked: Planned, limits: Limits) -> int:
+    """Keep a promise, and write how."""
+    promise = asked.promise
+    assert promise is not None
+
+    def known(case: Case) -> Solution | None:
+        tried = _Tried(case, asked.label)
+        if not climbs.may_know(promise, case):
+            return None
+        return None if why_solved(case.key, tried) else record.read(_record(case.key))[1]
+
+    def solve(case: Case) -> Solution:
+        tried = _Tried(case, asked.label)
+        if not why_solved(case.key, tried):
+            return record.read(_record(case.key))[1]
+        if tried.mesh and why_meshed(tried) and _mesh(tried, limits):
+            raise climbs.Unsolved
+        if pool.alone(partial(_solve, case.key, tried, limits)):  # so its time is its own
+            raise climbs.Unsolved
+        return record.read(_record(case.key))[1]
+
+    return climbs.climb(promise, solve, known)
 
 
 def _mesh(asked: Planned, limits: Limits) -> int:

@@ -21,6 +21,7 @@ from workflow.study.schema import (
     DesignEntry,
     MapEntry,
     PairEntry,
+    PromiseEntry,
     Scene,
     is_path,
 )
@@ -79,6 +80,7 @@ class Study:
     design: dict[str, DesignEntry] = field(default_factory=dict)
     maps: dict[str, MapEntry] = field(default_factory=dict)
     pairs: dict[str, PairEntry] = field(default_factory=dict)
+    promise: PromiseEntry = field(default_factory=PromiseEntry)
     wall_time: int  # s, of one case
     memory: int  # MB, of one case
     warnings: tuple[str, ...] = ()  # what may be meant otherwise

@@ -1,6 +1,6 @@
 """Where results stand, from the folder of a run.
 
-results/cases, meshes, cost, made, sources    of all studies: what is named by its content
+results/cases, meshes, promises, cost, made, sources   of all studies: named by their content
 results/                                      all else of the default study
 results/studies/<name>/                       all else of another one
 """
@@ -13,7 +13,9 @@ from workflow.study.errors import StudyError
 
 DEFAULT = Path("config/config.yaml")  # the study of the paper
 CASES, COST, MESHES = RESULTS / "cases", RESULTS / "cost", RESULTS / "meshes"
-STORE = {RESULTS / name for name in ("cases", "cost", "logs", "made", "meshes", "seals", "sources")}
+PROMISES = RESULTS / "promises"  # how climbs have ended
+NAMED = ("cases", "cost", "logs", "made", "meshes", "promises", "seals", "sources")
+STORE = {RESULTS / name for name in NAMED}
 LOGS = RESULTS / "logs" / "cases"
 SAME = ("study", "config")  # stems that say nothing: such a study is called like its folder
 OWNER = "study.txt"  # in the folder of a study: which file it is

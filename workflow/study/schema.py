@@ -59,6 +59,7 @@ ASKED = (  # those from stress on are solved for or written only when asked for
     "dynamic_stiffness",
 )
 FITTED = tuple(m for m in MODELS if MODELS[m].mesh and not MODELS[m].only_for)  # not too dear
+MEASURED = "measured"  # errors of meshes: by a mesh twice as fine
 SHEET = "sheet"  # the quantity that asks for the data sheet of a muscle
 QUANTITIES = {  # models that can give it
     **{name: tuple(m for m in MODELS if name in MODELS[m].quantities) for name in ASKED},
@@ -451,6 +452,13 @@ class VariantEntry(Entry):
     numerics: NumericsEntry = NumericsEntry()
 
 
+class PromiseEntry(Entry):
+    """The random muscles on which promises are tried."""
+
+    seed: Annotated[Whole, Field(ge=0, le=10**9)] = 1
+    muscles: Annotated[Whole, Field(gt=0, le=10**4)] = 200
+
+
 class LimitsEntry(Entry):
     """What a case may use."""
 
@@ -523,6 +531,7 @@ class Scene(Entry):
     effects: dict[_one_of(*EFFECTS, *OF_TIME), _one_of("on", "off")] = {}
     frequency: Values | None = None  # Hz
     tolerance: Annotated[Number, Field(gt=0, lt=1)] | None = None  # share of the largest value
+    errors: _one_of(MEASURED, "estimated") = "estimated"  # of the meshes
     quantities: _some_of(*QUANTITIES) = ()
     figure: FigureEntry | None = None
 
@@ -669,3 +678,4 @@ class StudyFile(Entry):
     design: dict[Name, DesignEntry] = {}
     map: dict[Name, MapEntry] = {}
     pair: dict[Name, PairEntry] = {}
+    promise: PromiseEntry = PromiseEntry()

@@ -144,6 +144,7 @@ def _of(source: Source, findings: Findings | None) -> Study:
         design=file.design,
         maps=file.map,
         pairs=file.pair,
+        promise=file.promise,
         wall_time=file.limits.wall_time,
         memory=file.limits.memory,
         warnings=tuple(checks.unusual(source, file, muscles)),

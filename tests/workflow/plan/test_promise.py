@@ -1,0 +1,209 @@
+"""Climbs, by made-up curves whose errors are known: what is solved, what is taken, what is said."""
+
+from dataclasses import replace
+from math import inf, isnan
+
+import numpy as np
+import pytest
+
+from solver.load_path import LoadPath
+from solver.record import Solution, unreached
+from solver.status import CaseStatus, Flag, StateStatus
+from workflow.plan import promise as module
+from workflow.plan.judged import FOLLOWS, difference
+from workflow.plan.like_muscles import Guess
+from workflow.plan.promise import Promise, climb, telling
+
+STOPS = (0.0, 0.05, 0.1, 0.15, 0.2)
+FORCE = np.array([600.0, 400.0, 250.0, 120.0, 10.0])
+RUNGS = {"cylinder": "cylinder", "membrane": "membrane", "solid": "solid", "solid, finer": "solid"}
+SECONDS = {"cylinder": 0.1, "membrane": 0.2, "solid": 1.0, "solid, finer": 3.0}
+
+
+@pytest.fixture
+def rungs(make_case):
+    path = LoadPath(kind="isobaric", held=0.3, stops=STOPS)
+    cases = {name: make_case(model=model, path=path) for name, model in RUNGS.items()}
+    numerics = cases["solid"].numerics
+    finer = replace(numerics, section=replace(numerics.section, refinement=2))
+    return cases | {"solid, finer": replace(cases["solid"], numerics=finer)}
+
+
+def guessed(monkeypatch, **errors):
+    """Guesses by rung, each with a spread of a factor of two to either side; or none."""
+
+    def made(case, name, judged):
+        median = errors.get(name.replace(", ", "_"))
+        if median is None:
+            return None
+        factors = tuple(float(f) for f in 2 ** np.linspace(-1, 1, 99))
+        return Guess(median, 2 * median, factors, 0.0, SECONDS[name], 99)
+
+    monkeypatch.setattr(module, "guess", made)
+
+
+class Solver:
+    """Gives curves that are off by known shares, and counts what it is asked for."""
+
+    def __init__(self, rungs, lost=(), smoothed=(), none=False, **off):
+        self.rungs, self.off, self.lost, self.smoothed = rungs, off, lost, smoothed
+        self.good = StateStatus.INVALID_STATE if none else StateStatus.CONVERGED
+        self.asked = []
+        self.known = {}
+
+    def __call__(self, case):
+        name = next(n for n, c in self.rungs.items() if self.same(c, case))
+        self.asked.append((name, len(case.path.stops)))
+        at = [STOPS.index(stop) for stop in case.path.stops]
+        states = unreached(len(at)) | {
+            "force": FORCE[at] + self.off.get(name.replace(", ", "_"), 0) * 600
+        }
+        states["contraction"] = np.array(case.path.stops)
+        status = [self.good] * len(at)
+        if name in self.lost:
+            status[-1] = StateStatus.INVALID_STATE
+        flags = [frozenset({Flag.SMOOTHED} if name in self.smoothed else ())] * len(at)
+        self.known[case.key] = Solution(
+            status=CaseStatus.CONVERGED, reason="", states=states, state_status=status, flags=flags
+        )
+        return self.known[case.key]
+
+    @staticmethod
+    def same(one, other):
+        return one.model == other.model and one.numerics == other.numerics
+
+    def there(self, case):
+        return self.known.get(case.key)
+
+
+def kept(rungs, solver, tolerance):
+    return climb(Promise(tolerance, (FOLLOWS,), rungs), solver, solver.there)
+
+
+def test_like_muscles_are_enough(rungs, monkeypatch):
+    guessed(monkeypatch, cylinder=0.1, membrane=0.004, solid=1e-4, solid_finer=1e-5)
+    solver = Solver(rungs, membrane=0.004)
+    end = kept(rungs, solver, 0.02)
+    assert (end.rung, end.holds, solver.asked) == ("membrane", True, [("membrane", 5)])
+    assert end.by == "estimated from 99 like muscles"
+    assert end.error == pytest.approx(0.008)
+
+
+def test_a_rung_that_loses_states_is_left(rungs, monkeypatch):
+    guessed(monkeypatch, cylinder=0.1, membrane=0.004, solid=1e-4, solid_finer=1e-5)
+    solver = Solver(rungs, lost=("membrane",))
+    end = kept(rungs, solver, 0.02)
+    assert (end.rung, end.holds) == ("solid", True)
+    assert end.verdicts["membrane"].error == inf
+
+
+def test_a_smoothed_state_is_none_of_a_cheap_rung(rungs, monkeypatch):
+    guessed(monkeypatch, cylinder=0.1, membrane=0.004, solid=1e-4, solid_finer=1e-5)
+    assert kept(rungs, Solver(rungs, smoothed=("membrane", "solid")), 0.02).rung == "solid"
+
+
+def test_what_may_do_is_checked_where_that_is_cheaper(rungs, monkeypatch):
+    guessed(monkeypatch, cylinder=0.1, membrane=0.006, solid=1e-4, solid_finer=1e-5)
+    solver = Solver(rungs, membrane=0.006)
+    end = kept(rungs, solver, 0.01)
+    assert solver.asked == [("membrane", 5), ("solid", 3)]
+    assert (end.rung, end.holds) == ("membrane", True)
+    assert end.by == "measured here by solid at telling states"
+    assert end.error == pytest.approx(0.006 / 1.006 + 2e-4)
+
+
+def test_a_check_that_fails_is_climbed_over(rungs, monkeypatch):
+    guessed(monkeypatch, cylinder=0.1, membrane=0.006, solid=1e-4, solid_finer=1e-5)
+    solver = Solver(rungs, membrane=0.013)
+    end = kept(rungs, solver, 0.01)
+    assert solver.asked == [("membrane", 5), ("solid", 3), ("solid", 5)]
+    assert (end.rung, end.holds) == ("solid", True)
+    assert end.verdicts["membrane"].by == "measured here by solid at all states"
+
+
+def test_what_no_muscles_are_like_is_measured_by_two_meshes(rungs, monkeypatch):
+    guessed(monkeypatch)
+    solver = Solver(rungs, solid=0.003)
+    end = kept(rungs, solver, 0.01)
+    assert solver.asked == [("solid", 5), ("solid, finer", 3)]
+    assert (end.rung, end.holds) == ("solid", True)
+    assert end.error == pytest.approx(0.003 * 4 / 3 / 1.003)
+
+
+def test_the_best_there_is_is_no_promise_kept(rungs, monkeypatch):
+    guessed(monkeypatch)
+    solver = Solver(rungs, solid=0.3)
+    end = kept(rungs, solver, 0.01)
+    assert (end.rung, end.holds) == ("solid, finer", False)
+    assert end.error == pytest.approx(0.1, rel=0.4)
+
+
+def test_where_no_rung_has_a_state_that_is_said(rungs, monkeypatch):
+    guessed(monkeypatch, cylinder=0.1, membrane=0.004, solid=1e-4, solid_finer=1e-5)
+    end = kept(rungs, Solver(rungs, none=True), 0.02)
+    assert (end.holds, end.error, end.by) == (False, inf, "no state is valid")
+
+
+def test_a_state_that_no_rung_has_is_no_failure_of_one(rungs, monkeypatch):
+    guessed(monkeypatch, cylinder=0.1, membrane=0.004, solid=1e-4, solid_finer=1e-5)
+    end = kept(rungs, Solver(rungs, lost=tuple(rungs), membrane=0.004), 0.02)
+    assert (end.rung, end.holds) == ("membrane", True)
+    assert end.by == "measured here by solid at all states; 1 of them no rung has"
+
+
+def test_one_model_alone_is_not_known(rungs, monkeypatch):
+    guessed(monkeypatch)
+    solver = Solver(rungs)
+    end = kept({"cylinder": rungs["cylinder"]}, solver, 0.02)
+    assert (end.rung, end.holds, end.by) == ("cylinder", False, "not known")
+    assert isnan(end.error)
+
+
+def test_a_later_climb_solves_nothing_that_is_there(rungs, monkeypatch):
+    guessed(monkeypatch, cylinder=0.1, membrane=0.004, solid=1e-4, solid_finer=1e-5)
+    solver = Solver(rungs, membrane=0.004)
+    assert kept(rungs, solver, 0.001).rung == "solid"
+    before = list(solver.asked)
+    end = kept(rungs, solver, 0.02)  # looser: a better one is there and costs nothing
+    assert (end.rung, solver.asked) == ("solid", before)
+
+
+def test_the_tolerance_and_what_is_judged_are_of_the_key(rungs):
+    one = Promise(0.01, (FOLLOWS,), rungs)
+    assert one.key == Promise(0.01, (FOLLOWS,), rungs).key
+    others = {
+        Promise(0.02, (FOLLOWS,), rungs).key,
+        Promise(0.01, (FOLLOWS, "volume"), rungs).key,
+        Promise(0.01, (FOLLOWS,), rungs, after=()).key,
+    }
+    assert len(others | {one.key}) == 4
+
+
+def test_telling_states_are_the_ends_the_bend_and_no_force(rungs):
+    case = rungs["membrane"]
+    stops = tuple(round(0.02 * k, 2) for k in range(11))
+    case = replace(case, path=replace(case.path, stops=stops))
+    force = np.where(
+        np.array(stops) < 0.05, 500 - 5000 * np.array(stops), 120 - 800 * np.array(stops)
+    )
+    states = unreached(11) | {"force": force, "contraction": np.array(stops)}
+    found = Solution(
+        status=CaseStatus.CONVERGED,
+        reason="",
+        states=states,
+        state_status=[StateStatus.CONVERGED] * 11,
+    )
+    numbers = telling(case, found)
+    assert {0, 10} <= set(numbers)
+    assert int(np.argmin(np.abs(force))) in numbers
+    assert {2, 3} & set(numbers)
+
+
+def test_the_difference_is_a_share_of_the_largest_value(rungs):
+    solver = Solver(rungs, membrane=0.01, lost=("cylinder",))
+    curves = {name: solver(case) for name, case in rungs.items()}
+    case = rungs["membrane"]
+    off = difference(case, curves["membrane"], curves["solid"], FOLLOWS)
+    assert off == pytest.approx(6 / 606, rel=1e-6)
+    lost = difference(rungs["cylinder"], curves["cylinder"], curves["solid"], FOLLOWS)
+    assert lost == inf

@@ -1,0 +1,1 @@
+"""Whether promises are kept, and at what cost, on random muscles."""

@@ -1,0 +1,76 @@
+"""Plans in which climbs have ended: the record of the rung that each has come to fills its places.
+
+results/promises/<key>.json is written by the job of a climb (workflow/run/climbs.py); its keys are
+those of ``Outcome`` (workflow/plan/promise.py), and ``seconds``, of the processor by record.
+"""
+
+import json
+from dataclasses import replace
+from typing import Any
+
+from workflow.plan.model_choice import RUNGS
+from workflow.plan.plan import Place, Plan, PlannedCase
+from workflow.study.folders import PROMISES
+
+
+def outcome(key: str) -> dict[str, Any] | None:
+    """How a climb has ended; None if it has not."""
+    try:
+        return dict(json.loads((PROMISES / f"{key}.json").read_text()))
+    except (OSError, ValueError):
+        return None
+
+
+def settled(plan: Plan) -> Plan:
+    """The plan with cases in place of climbs that have ended; others stay as they are."""
+    found = {key: end for key in plan.promises if (end := outcome(key))}
+    if not found:
+        return plan
+    cases = {key: asked for key, asked in plan.cases.items() if key not in found}
+    scenes = {
+        name: {place: key for place, key in places.items() if key not in found}
+        for name, places in plan.scenes.items()
+    }
+    taken = {place for asked in cases.values() for place in asked.places}
+    for key, end in found.items():
+        asked = plan.cases[key]
+        assert asked.promise is not None
+        case = asked.promise.rungs[end["rung"]]
+        moved = {place: _moved(place, end["rung"], taken) for place in asked.places}
+        taken |= set(moved.values())
+        own = PlannedCase(case, tuple(sorted(moved.values())), asked.scenes)
+        cases[case.key] = _joined(cases.get(case.key), own)
+        for name in asked.scenes:
+            of_scene = plan.scenes[name]
+            scenes[name] |= {moved[p]: case.key for p, of in of_scene.items() if of == key}
+    return replace(
+        plan,
+        cases=dict(sorted(cases.items(), key=lambda entry: entry[1].places)),
+        scenes={name: dict(sorted(places.items())) for name, places in scenes.items()},
+    )
+
+
+def _moved(place: Place, rung: str, taken: set[Place]) -> Place:
+    """Where a curve stands when its model is known: as if a scene had named it.
+
+    Where another curve stands there already it keeps its tolerance in the name of its variant.
+    """
+    found = RUNGS[rung]
+    variant = place.variant.partition("_within_")[0]
+    variant = _without_mesh(variant) + (f"_{found.mesh}" if found.mesh != "default" else "")
+    moved = replace(place, model=found.model, variant=variant)
+    return moved if moved not in taken else replace(moved, variant=place.variant)
+
+
+def _without_mesh(variant: str) -> str:
+    for mesh in {rung.mesh for rung in RUNGS.values()}:
+        variant = variant.removesuffix(f"_{mesh}")
+    return variant
+
+
+def _joined(there: PlannedCase | None, own: PlannedCase) -> PlannedCase:
+    """Two that are the same case."""
+    if there is None:
+        return own
+    places = tuple(sorted({*there.places, *own.places}))
+    return replace(there, places=places, scenes=tuple(sorted({*there.scenes, *own.scenes})))

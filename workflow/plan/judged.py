@@ -1,0 +1,79 @@
+"""What a tolerance is about: which quantities of a curve, relative to what, and which states count.
+
+Judged is what follows from the controls (the force; under a load the contraction), and of what a
+scene asks for the diameters, the volume and the state of zero force. An error is the largest
+difference at any stop, as a share of the largest absolute value along the curve; that of the state
+of zero force is a share of its own value. A state that the better model has and the other has not,
+or has only turned inside out or held by the smoothing of the slack law, is a failure: its error is
+infinite.
+"""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.case import Case
+from solver.load_path import ZERO_FORCE
+from solver.record import Solution
+from solver.status import Flag, StateStatus
+
+Array = NDArray[np.float64]
+FOLLOWS, ZERO = "follows", "zero_force"
+QUANTITIES = {  # of a scene, and the variables of the record
+    "inner_diameter": "inner_diameter_inflated",
+    "outer_diameter": "outer_diameter",
+    "volume": "volume",
+}
+VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
+
+
+def of_scene(quantities: Iterable[str]) -> tuple[str, ...]:
+    """What is judged of a scene that asks for some quantities."""
+    asked = set(quantities)
+    zero = (ZERO,) if asked & ZERO_FORCE.keys() else ()
+    return (FOLLOWS, *(name for name in QUANTITIES if name in asked), *zero)
+
+
+def variable_of(case: Case, quantity: str) -> str:
+    """Of the record; of the state of zero force the control that is swept."""
+    if quantity == ZERO:
+        return case.path.kind.swept.variable
+    return case.path.kind.follows if quantity == FOLLOWS else QUANTITIES[quantity]
+
+
+def is_valid(solution: Solution, *, smoothed: bool = True) -> NDArray[np.bool_]:
+    """Which states may be believed; ``smoothed``: also those that smoothing holds."""
+    pairs = zip(solution.state_status, solution.flags, strict=True)
+    return np.array([s in VALID and (smoothed or Flag.SMOOTHED not in f) for s, f in pairs])
+
+
+def difference(
+    case: Case, solution: Solution, better: Solution, quantity: str, at: Sequence[int] | None = None
+) -> float:
+    """The error of a curve by a better one, as a share; infinite where states are lost.
+
+    ``at`` are the states of the curve that the better one has, in its order; by default all.
+    """
+    numbers = np.arange(case.path.states) if at is None else np.asarray(at)
+    name, stops = variable_of(case, quantity), len(case.path.stops)
+    values, exact = solution.states[name], better.states[name]
+    fine = is_valid(better)
+    good = is_valid(solution, smoothed=case.model == "solid")[numbers]
+    here = numbers >= stops if quantity == ZERO else numbers < stops
+    if (fine & ~good & here).any():
+        return float("inf")
+    both = fine & good & here
+    if not both.any():
+        return float("nan")
+    off = np.abs(values[numbers] - exact)[both]
+    if quantity == ZERO:
+        return float(off[0] / np.abs(exact[both][0]))
+    return float(off.max() / scale(case, solution, quantity))
+
+
+def scale(case: Case, solution: Solution, quantity: str) -> float:
+    """The largest absolute value of a quantity along a curve."""
+    values = solution.states[variable_of(case, quantity)][: len(case.path.stops)]
+    known = np.abs(values[is_valid(solution)[: len(values)]])
+    return float(known.max()) if known.size else float("nan")

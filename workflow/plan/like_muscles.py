@@ -1,0 +1,289 @@
+"""First guesses: what an error is on muscles that are like one, with its spread.
+
+``like_muscles.csv`` beside this module has the errors of every rung of the ladder on random muscles
+of all kinds, and the dimensionless groups of these (workflow/plan/likeness.py); ``like_states.csv``
+those of the meshes at their states. Both are of the analysis of the ladder:
+
+    snakemake --cores 2 ladder && python -m workflow likeness
+
+An error is a power law of the groups, fitted by least squares with a small ridge. How far a muscle
+is from that law is what it was on the muscles of the table, each left out of the fit in its turn
+(of states all those of a curve). So of muscles that are drawn as these were a known share has at
+most what is said; of muscles outside of their ranges nothing is said.
+"""
+
+import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from math import ceil, cos, exp, inf, log, nan, radians, sqrt
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.case import Case
+from solver.record import Solution
+from workflow.plan import likeness
+from workflow.plan.judged import FOLLOWS, QUANTITIES
+
+CURVES = Path(__file__).with_suffix(".csv")
+STATES = CURVES.with_name("like_states.csv")
+DATA = ("workflow/plan/like_muscles.csv", "workflow/plan/like_states.csv")
+COVERAGE = 0.95  # share of like muscles, or of their states, that have at most what is said
+OF_STATES = 0.85  # the same of states, before the largest is raised to that of the curve
+RIDGE = 0.1  # of features whose spread is 1: as a tenth of a muscle that says nothing
+LEAST = 1e-7  # share: of smaller errors no law is fitted
+BEYOND = 0.1  # of a range (of its logarithm, where it is a ratio): so far a law is believed beyond
+LOGARITHMIC = ("pressure", "wall", "length", "strain", "lowest")
+PLAIN = ("angle", "furthest", "first", "load", "gap", "sleeve")
+OF_STATE = ("contraction", "at", "pull")
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Guess:
+    """Of the largest error of a rung on a curve, as a share (workflow/plan/judged.py).
+
+    Attributes
+    ----------
+    median, high : half of like muscles have at most this, and COVERAGE of them
+    spread : by which factors these have another one than the median, rising
+    lost : share of like muscles on which the rung loses states
+    seconds : of the processor, of such a curve
+    count : of muscles that it is from
+    """
+
+    median: float
+    high: float
+    spread: tuple[float, ...]
+    lost: float
+    seconds: float
+    count: int
+
+    def chance(self, tolerance: float) -> float:
+        """That the error is within a tolerance, if no state is lost."""
+        within = sum(self.median * factor <= tolerance for factor in self.spread)
+        return within / (len(self.spread) + 1)
+
+
+@dataclass(frozen=True)
+class Law:
+    """A power law with its spread.
+
+    Attributes
+    ----------
+    spread : of ln(error) around the law where it was left out of the fit, rising, in the widths of
+        its kind of path
+    widths : root mean square of that, by kind of path
+    """
+
+    centre: Array
+    scale: Array
+    factors: Array
+    inverse: Array
+    spread: Array
+    widths: dict[str, float]
+
+    @classmethod
+    def fit(cls, features: Array, errors: Array, blocks: Array, kinds: Array) -> "Law":
+        """Of rows of features; rows of one block are left out of the fit together."""
+        centre, scale = features.mean(0), features.std(0)
+        scale = np.where(scale > 0, scale, 1.0)
+        x = _with_one((features - centre) / scale)
+        y = np.log(np.maximum(errors, LEAST))
+        ridge = RIDGE * np.eye(x.shape[1])
+        ridge[0, 0] = 0.0
+        inverse = np.linalg.inv(x.T @ x + ridge)
+        factors = inverse @ x.T @ y
+        off = y - x @ factors
+        without = np.empty(len(y))
+        for block in np.unique(blocks):
+            of = blocks == block
+            own = x[of] @ inverse @ x[of].T
+            left = np.linalg.solve(np.eye(int(of.sum())) - own, off[of])
+            without[of] = left / np.sqrt(1 + np.diag(own))
+        widths = {str(k): float(np.sqrt(np.mean(without[kinds == k] ** 2))) for k in set(kinds)}
+        spread = np.sort(without / np.array([widths[str(kind)] for kind in kinds]))
+        return cls(centre, scale, factors, inverse, spread, widths)
+
+    def at(self, features: Array, kind: str) -> tuple[Array, Array]:
+        """ln(error) by the law, and the width of its spread there."""
+        x = _with_one((features - self.centre) / self.scale)
+        wider = np.sqrt(1 + np.einsum("ij,jk,ik->i", x, self.inverse, x))
+        return x @ self.factors, self.widths[kind] * wider
+
+    def quantile(self, share: float) -> float:
+        """What a share of new muscles does not exceed, of the spread."""
+        rank = ceil(share * (len(self.spread) + 1))
+        return float(self.spread[rank - 1]) if rank <= len(self.spread) else inf
+
+
+def guess(case: Case, rung: str, judged: Sequence[str] = (FOLLOWS,)) -> Guess | None:
+    """Of a rung on a curve, of the worst of some quantities; None if no muscles are like it."""
+    found = [_guess(case, rung, quantity) for quantity in judged]
+    known = [each for each in found if each is not None]
+    return max(known, key=lambda g: g.high) if known and len(known) == len(found) else None
+
+
+def _guess(case: Case, rung: str, quantity: str) -> Guess | None:
+    table = _curves().get(rung)
+    if table is None or quantity not in (FOLLOWS, *QUANTITIES) or not _is_like(case):
+        return None
+    law = _law(rung, quantity)
+    kind = str(case.path.kind)
+    if kind not in law.widths:
+        return None
+    value, wider = law.at(_features(likeness.groups(case), kind)[None], kind)
+    median = exp(value[0] + wider[0] * law.quantile(0.5))
+    near = _nearest(case, table)
+    return Guess(
+        median=median,
+        high=exp(value[0] + wider[0] * law.quantile(COVERAGE)),
+        spread=tuple(float(f) for f in np.exp(wider[0] * (law.spread - law.quantile(0.5)))),
+        lost=float(np.mean([float(table[k]["lost"]) > 0 for k in near])),
+        seconds=float(np.median([float(table[k]["seconds"]) for k in near])),
+        count=len(law.spread),
+    )
+
+
+def mesh_errors(case: Case, solution: Solution, rung: str, quantity: str) -> tuple[Array, int]:
+    """Errors of a mesh at the states of a curve, and from how many muscles that is known.
+
+    Shares of the largest value along the curve; NaN where no muscles are like it.
+    """
+    count = case.path.states
+    table = _states().get(rung)
+    if table is None or quantity not in (FOLLOWS, *QUANTITIES) or not _is_like(case):
+        return np.full(count, nan), 0
+    law = _state_law(rung, quantity)
+    groups, kind = likeness.groups(case), str(case.path.kind)
+    rows = [groups | likeness.of_state(case, solution, k) for k in range(count)]
+    known = np.array([all(np.isfinite(list(row.values()))) for row in rows])
+    found = np.full(count, nan)
+    if known.any():
+        features = np.array(
+            [_state_features(r, kind) for r, k in zip(rows, known, strict=True) if k]
+        )
+        value, wider = law.at(features, kind)
+        errors = np.exp(value + wider * law.quantile(OF_STATES))
+        found[known] = _up_to(errors, case, rung, quantity)
+    return found, len({row["curve"] for row in table})
+
+
+def _up_to(errors: Array, case: Case, rung: str, quantity: str) -> Array:
+    """Errors at states with the largest raised to that of the curve, smaller ones by less."""
+    whole = _guess(case, rung, quantity)
+    factor = max(1.0, whole.high / errors.max()) if whole is not None else 1.0
+    return np.asarray(errors * factor ** (errors / errors.max()))
+
+
+def origin() -> str:
+    """When and with which code the table was made."""
+    return CURVES.read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
+
+
+def ranges() -> dict[str, tuple[float, float]]:
+    """Of the groups in the table."""
+    rows = [row for table in _curves().values() for row in table]
+    names = (*LOGARITHMIC, *PLAIN)
+    return {n: (min(float(r[n]) for r in rows), max(float(r[n]) for r in rows)) for n in names}
+
+
+def _is_like(case: Case) -> bool:
+    """Whether all groups of a curve are in the ranges of the table, or hardly beyond."""
+    groups = likeness.groups(case)
+    for name, (low, high) in _ranges().items():
+        value = groups[name]
+        if name in LOGARITHMIC:
+            if not value > 0:
+                return False
+            low, high, value = log(low), log(high), log(value)
+        more = BEYOND * (high - low)
+        if not low - more <= value <= high + more:
+            return False
+    return True
+
+
+@cache
+def _ranges() -> dict[str, tuple[float, float]]:
+    return ranges()
+
+
+def _features(groups: Mapping[str, float], kind: str) -> Array:
+    found = [log(groups[name]) for name in LOGARITHMIC] + [groups[name] for name in PLAIN]
+    isometric, isotonic = float(kind == "isometric"), float(kind == "isotonic")
+    free = 1 - 1 / (sqrt(3) * cos(radians(groups["angle"])))  # contraction of a thin net
+    rubber = groups["wall"] * groups["furthest"] / groups["lowest"]  # of its force, by the net's
+    more = [groups["furthest"] / free, rubber, isometric * rubber, groups["angle"] ** 2]
+    return np.array([*found, isometric, isotonic, *more, isotonic * groups["load"] ** 2])
+
+
+def _state_features(row: Mapping[str, float], kind: str) -> Array:
+    own = [row[name] for name in OF_STATE]
+    ratio = row["at"] / row["pressure"]
+    more = [row["pull"] ** 2, row["contraction"] ** 2, ratio, row["contraction"] * row["angle"]]
+    return np.concatenate([_features(row, kind), own, more])
+
+
+def _with_one(features: Array) -> Array:
+    return np.column_stack([np.ones(len(features)), features])
+
+
+def _nearest(case: Case, table: list[dict[str, str]], count: int = 12) -> list[int]:
+    """The muscles of the table that are most like one, on the same kind of path."""
+    kind = str(case.path.kind)
+    own = _features(likeness.groups(case), kind)
+    rows = np.array([_features(_numbers(row), row["path"]) for row in table])
+    spread = np.where(rows.std(0) > 0, rows.std(0), 1.0)
+    away = (((rows - own) / spread) ** 2).sum(1)
+    away += np.where([row["path"] == kind for row in table], 0, 1e6)
+    return [int(k) for k in np.argsort(away)[:count]]
+
+
+@cache
+def _law(rung: str, quantity: str) -> Law:
+    rows = [r for r in _curves()[rung] if 0 <= float(r[quantity] or nan) < inf]
+    features = np.array([_features(_numbers(row), row["path"]) for row in rows])
+    errors = np.array([float(row[quantity]) for row in rows])
+    blocks, kinds = (np.array([row[name] for row in rows]) for name in ("curve", "path"))
+    return Law.fit(features, errors, blocks, kinds)
+
+
+@cache
+def _state_law(rung: str, quantity: str) -> Law:
+    rows = [r for r in _states()[rung] if float(r[quantity] or nan) >= 0]
+    features = np.array([_state_features(_numbers(row), row["path"]) for row in rows])
+    errors = np.array([float(row[quantity]) for row in rows])
+    blocks, kinds = (np.array([row[name] for row in rows]) for name in ("curve", "path"))
+    return Law.fit(features, errors, blocks, kinds)
+
+
+def _numbers(row: Mapping[str, str]) -> dict[str, float]:
+    names = (*LOGARITHMIC, *PLAIN, *OF_STATE)
+    return {name: float(row[name]) for name in names if name in row}
+
+
+@cache
+def _curves() -> dict[str, list[dict[str, str]]]:
+    return _read(CURVES)
+
+
+@cache
+def _states() -> dict[str, list[dict[str, str]]]:
+    """Rows of states, with the groups of their curves."""
+    of_curve = {row["curve"]: row for rows in _curves().values() for row in rows}
+    known = {"path", *LOGARITHMIC, *PLAIN}
+    groups = {curve: {n: row[n] for n in known} for curve, row in of_curve.items()}
+    return {
+        rung: [groups[row["curve"]] | row for row in rows] for rung, rows in _read(STATES).items()
+    }
+
+
+def _read(path: Path) -> dict[str, list[dict[str, str]]]:
+    """Rows of a table by rung."""
+    found: dict[str, list[dict[str, str]]] = {}
+    with path.open(newline="", encoding="utf-8") as stream:
+        for row in csv.DictReader(line for line in stream if not line.startswith("#")):
+            found.setdefault(row["rung"], []).append(row)
+    return found

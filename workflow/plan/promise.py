@@ -1,0 +1,359 @@
+"""A promise on one curve: the cheapest rung of the ladder that is proved exact enough for it.
+
+A climb begins on the rung that like muscles call for (workflow/plan/like_muscles.py). A rung is
+proved exact enough
+
+- by like muscles, if ``CONFIDENT`` of them are; it must then have every state of the curve,
+- or by a better rung on this curve, at all states or at a few telling ones: the difference of the
+  two and what the better one may itself be off are within the tolerance.
+
+Where neither is so it climbs. Pure but for the two functions that it is given: what a rung gives is
+asked of ``solve``, what is there already of ``known``.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import inf, isfinite, nan
+from typing import Any
+
+import numpy as np
+
+from solver.case import Case, canonical, digest
+from solver.record import Solution
+from workflow.plan.judged import FOLLOWS, ZERO, difference, is_valid, variable_of
+from workflow.plan.like_muscles import Guess, guess
+
+CONFIDENT = 0.97  # share of like muscles on which a rung must hold to be taken without a check
+OPEN = 0.5  # of those on which it must hold to be worth a check, whatever that costs
+OF_PAIR = 1 / 3  # error of the finer of two meshes by their difference: second order
+AT_STATES = 0.5  # cost of a curve at its telling states, of that of all
+SECONDS = {"cylinder": 0.2, "membrane": 0.3, "solid, coarser": 0.5, "solid": 0.5}
+DEAR = 1.3  # s, of a curve of what is not listed: for muscles that no others are like
+Solve = Callable[[Case], Solution]
+Known = Callable[[Case], Solution | None]
+
+
+@dataclass(frozen=True)
+class Promise:
+    """What a scene asks of a curve.
+
+    Attributes
+    ----------
+    tolerance : share of the largest value along the curve (workflow/plan/judged.py)
+    judged : quantities that it is about
+    rungs : the curve by every rung that can give it, cheapest first
+    after : climbs of whose records alone it may know, by key; by default of all that are there
+    """
+
+    tolerance: float
+    judged: tuple[str, ...]
+    rungs: dict[str, Case]
+    after: tuple[str, ...] | None = None
+
+    @cached_property
+    def key(self) -> str:
+        """Name of its outcome in files."""
+        cases = {name: case.as_dict() for name, case in self.rungs.items()}
+        asked: dict[str, Any] = {"tolerance": self.tolerance, "judged": self.judged, "rungs": cases}
+        if self.after is not None:
+            asked["after"] = self.after
+        return digest(canonical({"promise": asked}))
+
+    @cached_property
+    def guesses(self) -> dict[str, Guess | None]:
+        """Of the error of every rung."""
+        return {name: guess(case, name, self.judged) for name, case in self.rungs.items()}
+
+    @property
+    def start(self) -> str:
+        """The rung on which a climb begins that knows nothing."""
+        return _Climb(self, _unsolved, lambda _: None).first()
+
+    def with_stops(self, stops: tuple[float, ...], *, zero_force: bool) -> "Promise":
+        """The same of a curve with other stops."""
+        return replace(
+            self,
+            rungs={
+                name: replace(case, path=replace(case.path, stops=stops, zero_force=zero_force))
+                for name, case in self.rungs.items()
+            },
+        )
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What is known of a rung on a curve.
+
+    Attributes
+    ----------
+    error : it is not expected to exceed this; a share, infinite where states are lost
+    chance : that it is within the tolerance
+    by : how that is known
+    """
+
+    error: float
+    chance: float
+    by: str
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is proved exact enough."""
+        return self.chance >= CONFIDENT
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a climb has ended.
+
+    Attributes
+    ----------
+    rung : that is taken; holds : whether it is proved, or else only the best there is
+    error, by : of it, as in Verdict
+    tried : what was asked for, in this order: rung and number of states
+    verdicts : of every rung, in the end
+    """
+
+    rung: str
+    holds: bool
+    error: float
+    by: str
+    tried: tuple[tuple[str, int], ...]
+    verdicts: dict[str, Verdict] = field(default_factory=dict)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For a file."""
+        shown = {name: vars(verdict) for name, verdict in self.verdicts.items()}
+        return {**vars(self), "verdicts": shown}
+
+
+def climb(asked: Promise, solve: Solve, known: Known) -> Outcome:
+    """Keep a promise."""
+    return _Climb(asked, solve, known).run()
+
+
+def telling(case: Case, solution: Solution) -> tuple[int, ...]:
+    """Stops that tell most of a curve: both ends, its largest bend, nearest to no force."""
+    values = solution.states[case.path.kind.follows][: len(case.path.stops)]
+    there = np.flatnonzero(is_valid(solution)[: len(values)])
+    if there.size <= 4:
+        return tuple(map(int, there))
+    found = {int(there[0]), int(there[-1]), int(there[np.argmin(np.abs(values[there]))])}
+    x, y = np.array(case.path.stops)[there], values[there]
+    bend = np.abs(np.diff(np.diff(y) / np.diff(x)))
+    found.add(int(there[1 + int(np.argmax(bend))]))
+    return tuple(sorted(found))
+
+
+@dataclass
+class _Climb:
+    asked: Promise
+    solve: Solve
+    known: Known
+
+    def __post_init__(self) -> None:
+        rungs = self.asked.rungs
+        self.names = list(rungs)
+        self.solved = {n: found for n, case in rungs.items() if (found := self.known(case))}
+        self.checked: dict[tuple[str, str], float] = {}  # difference of a rung from a better one
+        self.tried: list[tuple[str, int]] = []
+
+    def first(self) -> str:
+        """The rung that is solved first."""
+        holding = self._holding()
+        worth = self._worth_a_check(holding)
+        return worth[0] if worth else holding or self._unguessed()
+
+    def run(self) -> Outcome:
+        """Climb until a rung holds, or none is left."""
+        while True:
+            holding = self._holding()
+            worth = self._worth_a_check(holding)
+            if worth:
+                self._check(*worth)
+            elif holding in self.solved:
+                return self._outcome(holding)
+            elif holding:
+                self._full(holding)
+            elif (name := self._unguessed()) not in self.solved:
+                self._full(name)
+            elif (better := self._next(name)) and (name, better) not in self.checked:
+                self._check(name, better)
+            elif better and better not in self.solved:
+                self._full(better)
+            else:
+                return self._outcome(self._best())
+
+    # --- what is known ----------------------------------------------------------------------------
+
+    def verdict(self, name: str) -> Verdict:
+        """Of a rung: by a better one on this curve, else by like muscles."""
+        if name in self.solved:
+            if not is_valid(self.solved[name]).any():
+                return Verdict(inf, 0.0, "no state is valid")
+            if lost := self._lost(name):
+                return Verdict(inf, 0.0, f"{lost} states are lost, not valid or smoothed")
+        found = [v for better in self._above(name) if (v := self._measured(name, better))]
+        if found:
+            return min(found, key=lambda v: v.error)
+        if pair := self._finest(name):
+            return pair
+        known = self.asked.guesses[name]
+        if known is None:
+            return Verdict(nan, 0.0, "not known")
+        by = f"estimated from {known.count} like muscles"
+        return Verdict(known.high, known.chance(self.asked.tolerance), by)
+
+    def _lost(self, name: str) -> int:
+        """States of a solved rung that are no answer, unless the best that is solved has none."""
+        case = self.asked.rungs[name]
+        good = is_valid(self.solved[name], smoothed=case.model == "solid")
+        for better in self._above(name):
+            if better in self.solved:
+                good |= ~is_valid(self.solved[better])
+        if ZERO not in self.asked.judged:
+            good = good[: len(case.path.stops)]
+        return int((~good).sum())
+
+    def _measured(self, name: str, better: str) -> Verdict | None:
+        """By a better rung; None if the two were not compared."""
+        case, count = self.asked.rungs[name], 0
+        if name in self.solved and better in self.solved:
+            pair = self.solved[name], self.solved[better]
+            off = max((difference(case, *pair, each) for each in self.asked.judged), key=_worse)
+            count = case.path.states
+        elif (name, better) in self.checked:
+            off = self.checked[name, better]
+        else:
+            return None
+        own = self._own_error(better, off if self._are_meshes(name, better) else nan)
+        error, tolerance = off + own, self.asked.tolerance
+        where = "all" if count else "telling"
+        by = f"measured here by {better} at {where} states"
+        if name in self.solved and (none := int((~is_valid(self.solved[name])).sum())):
+            by += f"; {none} of them no rung has"
+        return Verdict(error, float(error <= tolerance), by)
+
+    def _finest(self, name: str) -> Verdict | None:
+        """Of the finest mesh, by its difference from the next coarser one on this curve."""
+        if self._above(name) or len(self.names) < 2 or self.asked.guesses[name] is not None:
+            return None
+        coarse = self.names[-2]
+        if not (self._are_meshes(coarse, name) and {coarse, name} <= self.solved.keys()):
+            return None
+        pair = self.solved[coarse], self.solved[name]
+        case = self.asked.rungs[name]
+        off = max((difference(case, *pair, each) for each in self.asked.judged), key=_worse)
+        error = off * OF_PAIR
+        return Verdict(error, float(error <= self.asked.tolerance), f"measured here by {coarse}")
+
+    def _own_error(self, name: str, pair: float) -> float:
+        """What a rung may itself be off, by like muscles or by the pair; infinite if not known."""
+        known = self.asked.guesses[name]
+        if known is not None:
+            return known.high
+        return pair * OF_PAIR if isfinite(pair) else inf
+
+    def _are_meshes(self, name: str, better: str) -> bool:
+        return self.asked.rungs[name].model == self.asked.rungs[better].model
+
+    def _above(self, name: str) -> list[str]:
+        return self.names[self.names.index(name) + 1 :]
+
+    def _next(self, name: str) -> str | None:
+        return next(iter(self._above(name)), None)
+
+    # --- what to do -------------------------------------------------------------------------------
+
+    def _holding(self) -> str | None:
+        """The cheapest rung that holds; one that is solved costs nothing more."""
+        holding = [name for name in self.names if self.verdict(name).holds]
+        there = [name for name in holding if name in self.solved]
+        if there or not holding:
+            return there[0] if there else None
+        return min(holding, key=lambda name: self._expected(name, holding))
+
+    def _expected(self, name: str, holding: list[str]) -> float:
+        """Seconds of a rung, and of the next one where it loses states."""
+        known = self.asked.guesses[name]
+        better = [each for each in holding if each in self._above(name)]
+        lost = known.lost if known else 0.0
+        return self._seconds(name) + lost * (self._seconds(better[0]) if better else 0.0)
+
+    def _worth_a_check(self, holding: str | None) -> tuple[str, str] | None:
+        """A rung that may do, and a better one that can prove it, if that is likely cheaper."""
+        if holding is None or holding in self.solved:
+            return None
+        sure = self._seconds(holding)
+        for name in self.names[: self.names.index(holding)]:
+            verdict, known = self.verdict(name), self.asked.guesses[name]
+            if not verdict.by.startswith("estimated") or known is None:
+                continue
+            chance = verdict.chance * (1 - known.lost)
+            own = 0.0 if name in self.solved else self._seconds(name)
+            expected = own + AT_STATES * sure + (1 - chance) * sure
+            if expected < sure and self._own_error(holding, nan) <= self.asked.tolerance / 2:
+                return name, holding
+        return None
+
+    def _unguessed(self) -> str:
+        """Where to begin without a guess: the next to the finest mesh of the best model, or it."""
+        best = self.asked.rungs[self.names[-1]].model
+        meshes = [name for name in self.names if self.asked.rungs[name].model == best]
+        name = meshes[max(0, len(meshes) - 2)]
+        failed = (name, meshes[-1]) in self.checked or name in self.solved
+        return meshes[-1] if failed and meshes[-1] in self.solved else name
+
+    def _best(self) -> str:
+        """The most exact of those that have most states."""
+        counts = {name: int(is_valid(solution).sum()) for name, solution in self.solved.items()}
+        most = max(counts.values())
+        return max((n for n in counts if counts[n] == most), key=self.names.index)
+
+    def _seconds(self, name: str) -> float:
+        known = self.asked.guesses[name]
+        return known.seconds if known else SECONDS.get(name, DEAR)
+
+    # --- doing it ---------------------------------------------------------------------------------
+
+    def _full(self, name: str) -> Solution:
+        """Solve a rung at all states."""
+        if name not in self.solved:
+            case = self.asked.rungs[name]
+            self.solved[name] = self.solve(case)
+            self.tried.append((name, case.path.states))
+        return self.solved[name]
+
+    def _check(self, name: str, better: str) -> None:
+        """Compare a rung with a better one at the telling states."""
+        case, own = self.asked.rungs[name], self._full(name)
+        if self._lost(name):
+            self.checked[name, better] = inf
+            return
+        if better in self.solved:
+            return
+        numbers = telling(case, own)
+        path = self.asked.rungs[better].path
+        path = replace(path, stops=tuple(path.stops[k] for k in numbers))
+        found = self.solve(replace(self.asked.rungs[better], path=path))
+        self.tried.append((better, path.states))
+        at = [*numbers, *([len(case.path.stops)] if path.zero_force else [])]
+        off = [difference(case, own, found, each, at) for each in self.asked.judged]
+        self.checked[name, better] = max(off, key=_worse)
+
+    def _outcome(self, name: str) -> Outcome:
+        verdicts = {each: self.verdict(each) for each in self.names}
+        found = verdicts[name]
+        return Outcome(name, found.holds, found.error, found.by, tuple(self.tried), verdicts)
+
+
+def _worse(error: float) -> float:
+    """To find the worst of some errors: one that is not known is worse than any."""
+    return inf if error != error else error
+
+
+def _unsolved(case: Case) -> Solution:
+    raise AssertionError(f"{case.key} is only planned")
+
+
+__all__ = ["FOLLOWS", "Guess", "Outcome", "Promise", "Verdict", "climb", "telling", "variable_of"]
