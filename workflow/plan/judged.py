@@ -76,4 +76,4 @@ def scale(case: Case, solution: Solution, quantity: str) -> float:
     """The largest absolute value of a quantity along a curve."""
     values = solution.states[variable_of(case, quantity)][: len(case.path.stops)]
     known = np.abs(values[is_valid(solution)[: len(values)]])
-    return float(known.max()) if known.size else float("nan")
+    return float(np.nanmax(known)) if np.isfinite(known).any() else float("nan")

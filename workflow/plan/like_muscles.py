@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.case import Case
+from solver.models import MODELS
 from solver.record import Solution
 from workflow.plan import likeness
 from workflow.plan.judged import FOLLOWS, QUANTITIES
@@ -33,6 +34,7 @@ DATA = ("workflow/plan/like_muscles.csv", "workflow/plan/like_states.csv")
 COVERAGE = 0.95  # share of like muscles, or of their states, that have at most what is said
 OF_STATES = 0.85  # the same of states, before the largest is raised to that of the curve
 RIDGE = 0.1  # of features whose spread is 1: as a tenth of a muscle that says nothing
+MOST = 50.0  # of a logarithm: far from the middle of the table a spread says nothing
 LEAST = 1e-7  # share: of smaller errors no law is fitted
 BEYOND = 0.1  # of a range (of its logarithm, where it is a ratio): so far a law is believed beyond
 LOGARITHMIC = ("pressure", "wall", "length", "strain", "lowest")
@@ -95,7 +97,7 @@ class Law:
         ridge = RIDGE * np.eye(x.shape[1])
         ridge[0, 0] = 0.0
         inverse = np.linalg.inv(x.T @ x + ridge)
-        factors = inverse @ x.T @ y
+        factors = np.asarray(inverse @ x.T @ y)
         off = y - x @ factors
         without = np.empty(len(y))
         for block in np.unique(blocks):
@@ -105,7 +107,7 @@ class Law:
             without[of] = left / np.sqrt(1 + np.diag(own))
         widths = {str(k): float(np.sqrt(np.mean(without[kinds == k] ** 2))) for k in set(kinds)}
         spread = np.sort(without / np.array([widths[str(kind)] for kind in kinds]))
-        return cls(centre, scale, factors, inverse, spread, widths)
+        return cls(centre, scale, factors, np.asarray(inverse), spread, widths)
 
     def at(self, features: Array, kind: str) -> tuple[Array, Array]:
         """ln(error) by the law, and the width of its spread there."""
@@ -135,12 +137,14 @@ def _guess(case: Case, rung: str, quantity: str) -> Guess | None:
     if kind not in law.widths:
         return None
     value, wider = law.at(_features(likeness.groups(case), kind)[None], kind)
-    median = exp(value[0] + wider[0] * law.quantile(0.5))
+    median = exp(min(value[0] + wider[0] * law.quantile(0.5), MOST))
     near = _nearest(case, table)
     return Guess(
         median=median,
-        high=exp(value[0] + wider[0] * law.quantile(COVERAGE)),
-        spread=tuple(float(f) for f in np.exp(wider[0] * (law.spread - law.quantile(0.5)))),
+        high=exp(min(value[0] + wider[0] * law.quantile(COVERAGE), MOST)),
+        spread=tuple(
+            float(f) for f in np.exp(np.minimum(wider[0] * (law.spread - law.quantile(0.5)), MOST))
+        ),
         lost=float(np.mean([float(table[k]["lost"]) > 0 for k in near])),
         seconds=float(np.median([float(table[k]["seconds"]) for k in near])),
         count=len(law.spread),
@@ -166,13 +170,15 @@ def mesh_errors(case: Case, solution: Solution, rung: str, quantity: str) -> tup
             [_state_features(r, kind) for r, k in zip(rows, known, strict=True) if k]
         )
         value, wider = law.at(features, kind)
-        errors = np.exp(value + wider * law.quantile(OF_STATES))
+        errors = np.exp(np.minimum(value + wider * law.quantile(OF_STATES), MOST))
         found[known] = _up_to(errors, case, rung, quantity)
     return found, len({row["curve"] for row in table})
 
 
 def _up_to(errors: Array, case: Case, rung: str, quantity: str) -> Array:
     """Errors at states with the largest raised to that of the curve, smaller ones by less."""
+    if MODELS[case.model].fuller:  # what is known of its curves is not its mesh's alone
+        return errors
     whole = _guess(case, rung, quantity)
     factor = max(1.0, whole.high / errors.max()) if whole is not None else 1.0
     return np.asarray(errors * factor ** (errors / errors.max()))

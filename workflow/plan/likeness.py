@@ -27,6 +27,7 @@ def groups(case: Case) -> dict[str, float]:
     gap : widest between tube and sleeve, of the outer radius; sleeve : share of layers around it
     furthest, first : largest and smallest contraction of the path, where it is given
     load : of p pi D^2 / 4, where it is given
+    lowest : as ``pressure``, the smallest of the path above zero
     """
     muscle, path = case.muscle, case.path
     isobaric, isometric = (path.kind is kind for kind in (PathKind.ISOBARIC, PathKind.ISOMETRIC))
@@ -41,7 +42,8 @@ def groups(case: Case) -> dict[str, float]:
         "load": 0.0 if isobaric or isometric else path.held / max(pressure * pi * square / 4, 1e-9),
         "lowest": pressure / case.rubber.shear_modulus
         if isobaric
-        else min(path.stops) / case.rubber.shear_modulus,
+        else min((stop for stop in path.stops if stop > 0), default=0.0)
+        / case.rubber.shear_modulus,
     }
     if muscle.braid is None or case.thread is None:
         return found | dict.fromkeys(("strain", "angle", "gap", "sleeve"), float("nan"))

@@ -5,9 +5,9 @@
   1.5 times that is reported, as muscles that are pushed far converge more slowly.
 - Estimated from like muscles (workflow/plan/like_muscles.py), on the meshes of the ladder.
 - Not known, otherwise. ``mesh_error.csv`` beside this module has what the analysis of accuracy has
-  found on the muscle of the paper: the largest errors on any of its curves, as shares of the
-  largest value. It serves muscles of that size alone, on meshes that the ladder has not, and the
-  choice of a mesh (workflow/plan/model_choice.py):
+  found on the curves of the paper: the largest errors on any of them, as shares of the largest
+  value. It serves muscles of these sizes alone, where no muscles of the ladder are like them, and
+  the choice of a mesh (workflow/plan/model_choice.py):
 
     snakemake --cores 2 accuracy && python -m workflow bounds
 
@@ -41,7 +41,11 @@ PART = {  # of the numerics, that is the mesh, of models whose mesh is a grading
     for name, model in MODELS.items()
     if model.mesh and issubclass(KINDS[model.mesh], Grading)
 }
-PAPER = (20, 2, 300)  # mm: diameter, wall and length of the muscle that was measured
+PAPER = {  # mm: sizes of the muscles of the paper, whose curves were measured
+    "inner_diameter": (20, 40),
+    "wall_thickness": (1.5, 2, 2.5, 3),
+    "length": (300,),
+}
 OF_PAIR = 4 / 3 * 1.5  # error of a mesh by the difference of one twice as fine, and for safety
 CONTROLS = ("contraction", "pressure")
 OF_VARIABLE = {variable: quantity for quantity, variable in QUANTITIES.items()}
@@ -80,8 +84,8 @@ def error(
         share, count = mesh_errors(case, solution, rung, quantity)
         if count and np.isfinite(share).any():
             return share * scale(case, solution, quantity)
-    share = _share(case, "force" if quantity == FOLLOWS else variable)
-    return np.where(np.isfinite(values), share * scale(case, solution, quantity), np.nan)
+    of_paper = _share(case, "force" if quantity == FOLLOWS else variable)
+    return np.where(np.isfinite(values), of_paper * scale(case, solution, quantity), np.nan)
 
 
 def known_by(case: Case, solution: Solution, finer: Solution | None = None) -> str:
@@ -95,7 +99,7 @@ def known_by(case: Case, solution: Solution, finer: Solution | None = None) -> s
         if count and np.isfinite(share).any():
             return f"estimated from {count} like muscles"
     known = np.isfinite(_share(case, "force"))
-    return "estimated from the curves of the paper's muscle" if known else "not known"
+    return "estimated from the curves of the paper" if known else "not known"
 
 
 def rung_of(case: Case) -> str:
@@ -105,7 +109,8 @@ def rung_of(case: Case) -> str:
     switches = MODELS[case.model].switches
     if any(getattr(case.effects, name) != getattr(Effects(), name) for name in switches):
         return ""
-    for mesh, settings in MESHES.items():
+    for mesh in sorted(MESHES, key="default".__ne__):  # what others do not set is of it
+        settings = MESHES[mesh]
         numerics = replace(Numerics(), **settings).of(case.muscle)
         parts = [PART[case.model], *(["clamp"] if case.clamped else [])]
         if all(getattr(numerics, part) == getattr(case.numerics, part) for part in parts):
@@ -144,9 +149,8 @@ def _of_zero_force(
 
 
 def _share(case: Case, variable: str) -> float:
-    """Of the muscle of the paper: by the mesh of the case or the next coarser one of its family."""
-    muscle = case.muscle
-    if (muscle.inner_diameter, muscle.wall_thickness, muscle.length) != PAPER:
+    """Of muscles of the paper: by the mesh of the case or the next coarser one of its family."""
+    if any(getattr(case.muscle, name) not in sizes for name, sizes in PAPER.items()):
         return np.nan
     if case.model not in PART:
         return np.nan

@@ -266,11 +266,11 @@ class _Climb:
     # --- what to do -------------------------------------------------------------------------------
 
     def _holding(self) -> str | None:
-        """The cheapest rung that holds; one that is solved costs nothing more."""
+        """The cheapest rung that holds; of those that are there the most exact, at no cost."""
         holding = [name for name in self.names if self.verdict(name).holds]
         there = [name for name in holding if name in self.solved]
         if there or not holding:
-            return there[0] if there else None
+            return there[-1] if there else None
         return min(holding, key=lambda name: self._expected(name, holding))
 
     def _expected(self, name: str, holding: list[str]) -> float:

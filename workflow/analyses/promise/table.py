@@ -77,7 +77,7 @@ def _of_curve(solved: Sequence[Solved]) -> list[dict[str, Any]]:
             }
         )
     dearest = max(needed, key=costs.__getitem__, default=NONE)
-    cost = {
+    cost: dict[str, Any] = {
         "dearest": dearest,
         "curve_seconds [s]": sum(asked_for.values()) + own,
         "hindsight_seconds [s]": sum(costs[name] for name in needed),
@@ -100,8 +100,8 @@ def summary(choices: pd.DataFrame) -> pd.DataFrame:
         "all": choices,
     }
     by_tolerance = choices.groupby("tolerance [1]", sort=True)
-    rows = [{"choices": f"within {100 * t:g} %"} | _kept(part) for t, part in by_tolerance]
-    rows += [{"choices": name} | _kept(p) | _cost(p) for name, p in of_curves.items()]
+    rows = [{"choices": f"within {100 * t:g} %", **_kept(part)} for t, part in by_tolerance]
+    rows += [{"choices": name, **_kept(p), **_cost(p)} for name, p in of_curves.items()]
     return pd.DataFrame(rows)
 
 

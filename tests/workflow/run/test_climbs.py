@@ -1,0 +1,145 @@
+"""Climbs inside a batch: what they leave, what they find again, and what stands in its place."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from solver.freefem import Limits
+from workflow.data import dataset, records, settled
+from workflow.plan.explain import lines
+from workflow.plan.plan import plan
+from workflow.run import batches, climbs
+from workflow.study.errors import StudyError
+from workflow.study.study import load
+
+from ..synthetic import MUSCLE
+
+SCENE = "path: isobaric, muscles: [one], pressure: [0.3], contraction"
+STUDY = f"""\
+{MUSCLE}\
+scenes:
+  loose: {{{SCENE}: [0, 0.05, 0.1, 0.15], tolerance: 0.05}}
+  tight: {{{SCENE}: [0, 0.05, 0.1, 0.15], tolerance: 0.004}}
+  named: {{{SCENE}: [0, 0.1], models: [membrane], errors: measured}}
+"""
+LIMITS = Limits(wall_time=300, memory=4000)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder in which the study is solved once."""
+    place = tmp_path_factory.mktemp("climbs")
+    (place / "study.yaml").write_text(STUDY)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(place)
+        found = planned()
+        assert batches.solve(found.cases, 2, LIMITS, Path("log.txt")) == 0
+        yield place
+
+
+def planned():
+    return plan(load("study.yaml"))
+
+
+def outcomes(found):
+    scene = {asked.scenes[0]: key for key, asked in found.cases.items() if asked.promise}
+    return {name: settled.outcome(key) for name, key in scene.items()}
+
+
+def test_a_plan_knows_climbs_and_no_model_of_theirs(folder):
+    found = planned()
+    assert len(found.promises) == 2
+    (loose,) = found.scenes["loose"]
+    assert loose.variant == "default_within_0.05"
+    assert found.cases[found.scenes["loose"][loose]].mesh is None
+
+
+def test_each_comes_to_a_rung_that_is_proved(folder):
+    ends = outcomes(planned())
+    assert ends["loose"]["holds"]
+    assert ends["loose"]["rung"] == "membrane"
+    assert ends["tight"]["holds"]
+    assert ends["tight"]["rung"].startswith("solid")
+    assert ends["tight"]["error"] <= 0.004
+    for end in ends.values():
+        assert set(end["seconds"]) <= {path.stem for path in Path("results/cases").iterdir()}
+        assert all(seconds > 0 for seconds in end["seconds"].values())
+
+
+def test_nothing_is_done_again(folder):
+    found = planned()
+    assert batches.to_solve(found.cases) == {}
+    before = batches.stamp(found.cases)
+    assert batches.solve(found.cases, 1, LIMITS, Path("again.txt")) == 0
+    assert Path("again.txt").read_text() == ""
+    assert batches.stamp(found.cases) == before
+
+
+def test_another_tolerance_finds_what_was_tried(folder):
+    Path("other.yaml").write_text(STUDY.replace("tolerance: 0.05", "tolerance: 0.03"))
+    found = plan(load("other.yaml"))
+    records_before = set(Path("results/cases").iterdir())
+    (key,) = batches.to_solve(found.cases)
+    assert batches.solve(found.cases, 1, LIMITS, Path("other.txt")) == 0
+    assert set(Path("results/cases").iterdir()) == records_before
+    assert settled.outcome(key)["tried"] == []
+
+
+def test_the_dataset_has_the_models_that_were_come_to(folder):
+    found = settled.settled(planned())
+    assert not found.promises
+    curves = records.curves_of_study(found)
+    tree = dataset.build(curves, found.study.muscles)
+    group = tree["isobaric"].to_dataset()
+    assert {"membrane", "solid"} == set(group.model.values)
+    chosen = group.sel(muscle="one", model="membrane", pressure=0.3, variant="default_within_0.05")
+    assert chosen.force.notnull().sum() == 4
+
+
+def test_errors_that_are_measured_say_so(folder):
+    found = settled.settled(planned())
+    table = dataset.build(records.curves_of_study(found), found.study.muscles)[
+        "states"
+    ].to_dataset()
+    frame = table.to_dataframe()
+    by = set(frame["error_by"])
+    assert "measured here" in by
+    assert any(each.startswith("estimated from") for each in by)
+    measured = frame[frame["error_by"] == "measured here"]
+    assert (measured["force_error"] > 0).all()
+    assert (measured["force_error"] < 1).all()
+    assert (measured["volume_error"] > 0).all()
+
+
+def test_explain_says_what_was_guessed_and_what_was_measured(folder):
+    before = "\n".join(lines(planned()))
+    assert "95 % of" in before
+    assert "like muscles" in before
+    assert "begins on membrane, and climbs until it is proved" in before
+    assert "leaves out end_caps, cap_geometry" in before
+    after = "\n".join(lines(planned(), settled.outcome))
+    assert "membrane is proved" in after
+    assert "s of the processor" in after
+
+
+def test_what_has_not_ended_is_asked_for(folder):
+    Path("new.yaml").write_text(STUDY.replace("tolerance: 0.05", "tolerance: 0.2"))
+    found = settled.settled(plan(load("new.yaml")))
+    (key,) = found.promises
+    with pytest.raises(StudyError, match="its climb has not ended"):
+        records.taken(found.cases[key])
+    assert json.loads(climbs.path_of(next(iter(planned().promises))).read_text())["holds"]
+
+
+def test_a_lost_record_or_outcome_is_made_again(folder):
+    """Last, since a climb that is done again may come to another rung, of those that are there."""
+    found = planned()
+    key = found.scenes["loose"][next(iter(found.scenes["loose"]))]
+    taken = Path("results/cases") / f"{settled.outcome(key)['record']}.h5"
+    taken.unlink()
+    assert batches.to_solve(found.cases)[key] == "no record"
+    climbs.path_of(key).unlink()
+    assert batches.to_solve(found.cases)[key] == "no climb yet"
+    assert batches.solve(found.cases, 1, LIMITS, Path("made.txt")) == 0
+    assert batches.to_solve(found.cases) == {}
