@@ -4,8 +4,9 @@ A climb begins on the rung that like muscles call for (workflow/plan/like_muscle
 proved exact enough
 
 - by like muscles, if ``CONFIDENT`` of them are; it must then have every state of the curve,
-- or by a better rung on this curve, at all states or at a few telling ones: the difference of the
-  two and what the better one may itself be off are within the tolerance.
+- by a better rung on this curve, at all states or at a few telling ones: the difference of the two
+  and what the better one may itself be off are within the tolerance,
+- or, of a mesh, by a coarser one on this curve.
 
 Where neither is so it climbs. Pure but for the two functions that it is given: what a rung gives is
 asked of ``solve``, what is there already of ``known``.
@@ -14,7 +15,8 @@ asked of ``solve``, what is there already of ``known``.
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import inf, isfinite, nan
+from itertools import pairwise
+from math import inf, nan
 from typing import Any
 
 import numpy as np
@@ -25,10 +27,14 @@ from workflow.plan.judged import FOLLOWS, ZERO, difference, is_valid, variable_o
 from workflow.plan.like_muscles import Guess, guess
 
 CONFIDENT = 0.97  # share of like muscles on which a rung must hold to be taken without a check
-OPEN = 0.5  # of those on which it must hold to be worth a check, whatever that costs
-OF_PAIR = 1 / 3  # error of the finer of two meshes by their difference: second order
-AT_STATES = 0.5  # cost of a curve at its telling states, of that of all
+BY_COARSER = {  # error of a mesh by its difference from the next coarser one of the ladder:
+    "default": 2.0,  # 97 of 100 curves of the ladder have less; their median is 0.44
+    "finer": 0.5,  # of second order it is 1/3, and 1.5 of that for safety
+}
+START = 40  # states that cost as much as getting to the first one
+CHEAP = 0.6  # of the cost of all states: a check at a few of them that costs more is not worth it
 SECONDS = {"cylinder": 0.2, "membrane": 0.3, "solid, coarser": 0.5, "solid": 0.5}
+TELLING = 4  # states at most of a check
 DEAR = 1.3  # s, of a curve of what is not listed: for muscles that no others are like
 Solve = Callable[[Case], Solution]
 Known = Callable[[Case], Solution | None]
@@ -136,7 +142,7 @@ def telling(case: Case, solution: Solution) -> tuple[int, ...]:
     """Stops that tell most of a curve: both ends, its largest bend, nearest to no force."""
     values = solution.states[case.path.kind.follows][: len(case.path.stops)]
     there = np.flatnonzero(is_valid(solution)[: len(values)])
-    if there.size <= 4:
+    if there.size <= TELLING:
         return tuple(map(int, there))
     found = {int(there[0]), int(there[-1]), int(there[np.argmin(np.abs(values[there]))])}
     x, y = np.array(case.path.stops)[there], values[there]
@@ -161,26 +167,20 @@ class _Climb:
     def first(self) -> str:
         """The rung that is solved first."""
         holding = self._holding()
-        worth = self._worth_a_check(holding)
-        return worth[0] if worth else holding or self._unguessed()
+        return next(iter(self._worth(holding)), holding) or self._unguessed()
 
     def run(self) -> Outcome:
         """Climb until a rung holds, or none is left."""
         while True:
             holding = self._holding()
-            worth = self._worth_a_check(holding)
-            if worth:
-                self._check(*worth)
-            elif holding in self.solved:
+            if holding in self.solved:
                 return self._outcome(holding)
-            elif holding:
-                self._full(holding)
-            elif (name := self._unguessed()) not in self.solved:
+            if worth := self._worth(holding):
+                self._full(worth[0])
+            elif pair := self._worth_a_look(holding):
+                self._check(*pair)
+            elif (name := holding or self._unguessed()) not in self.solved:
                 self._full(name)
-            elif (better := self._next(name)) and (name, better) not in self.checked:
-                self._check(name, better)
-            elif better and better not in self.solved:
-                self._full(better)
             else:
                 return self._outcome(self._best())
 
@@ -194,10 +194,9 @@ class _Climb:
             if lost := self._lost(name):
                 return Verdict(inf, 0.0, f"{lost} states are lost, not valid or smoothed")
         found = [v for better in self._above(name) if (v := self._measured(name, better))]
+        found += [v] if (v := self._by_coarser(name)) else []
         if found:
-            return min(found, key=lambda v: v.error)
-        if pair := self._finest(name):
-            return pair
+            return min(found, key=lambda v: _worse(v.error))
         known = self.asked.guesses[name]
         if known is None:
             return Verdict(nan, 0.0, "not known")
@@ -226,7 +225,7 @@ class _Climb:
             off = self.checked[name, better]
         else:
             return None
-        own = self._own_error(better, off if self._are_meshes(name, better) else nan)
+        own = self._own_error(better)
         error, tolerance = off + own, self.asked.tolerance
         where = "all" if count else "telling"
         by = f"measured here by {better} at {where} states"
@@ -234,34 +233,32 @@ class _Climb:
             by += f"; {none} of them no rung has"
         return Verdict(error, float(error <= tolerance), by)
 
-    def _finest(self, name: str) -> Verdict | None:
-        """Of the finest mesh, by its difference from the next coarser one on this curve."""
-        if self._above(name) or len(self.names) < 2 or self.asked.guesses[name] is not None:
+    def _by_coarser(self, name: str) -> Verdict | None:
+        """Of a mesh, by the next coarser one of its model; None if the two are not solved."""
+        meshes, mesh = self._meshes(name), name.partition(", ")[2] or "default"
+        coarser = next(iter(meshes[meshes.index(name) + 1 :]), None)
+        if coarser is None or not {name, coarser} <= self.solved.keys() or mesh not in BY_COARSER:
             return None
-        coarse = self.names[-2]
-        if not (self._are_meshes(coarse, name) and {coarse, name} <= self.solved.keys()):
-            return None
-        pair = self.solved[coarse], self.solved[name]
-        case = self.asked.rungs[name]
+        pair = self.solved[coarser], self.solved[name]
+        case = self.asked.rungs[coarser]
         off = max((difference(case, *pair, each) for each in self.asked.judged), key=_worse)
-        error = off * OF_PAIR
-        return Verdict(error, float(error <= self.asked.tolerance), f"measured here by {coarse}")
+        error = BY_COARSER[mesh] * off
+        return Verdict(error, float(error <= self.asked.tolerance), f"measured here by {coarser}")
 
-    def _own_error(self, name: str, pair: float) -> float:
-        """What a rung may itself be off, by like muscles or by the pair; infinite if not known."""
+    def _own_error(self, name: str) -> float:
+        """What a rung may itself be off: by a coarser mesh, by like muscles; infinite if unknown."""
+        if measured := self._by_coarser(name):
+            return measured.error
         known = self.asked.guesses[name]
-        if known is not None:
-            return known.high
-        return pair * OF_PAIR if isfinite(pair) else inf
+        return known.high if known is not None else inf
 
-    def _are_meshes(self, name: str, better: str) -> bool:
-        return self.asked.rungs[name].model == self.asked.rungs[better].model
+    def _meshes(self, name: str) -> list[str]:
+        """The meshes of the model of a rung, finest first."""
+        model = self.asked.rungs[name].model
+        return [each for each in reversed(self.names) if self.asked.rungs[each].model == model]
 
     def _above(self, name: str) -> list[str]:
         return self.names[self.names.index(name) + 1 :]
-
-    def _next(self, name: str) -> str | None:
-        return next(iter(self._above(name)), None)
 
     # --- what to do -------------------------------------------------------------------------------
 
@@ -280,29 +277,43 @@ class _Climb:
         lost = known.lost if known else 0.0
         return self._seconds(name) + lost * (self._seconds(better[0]) if better else 0.0)
 
-    def _worth_a_check(self, holding: str | None) -> tuple[str, str] | None:
-        """A rung that may do, and a better one that can prove it, if that is likely cheaper."""
+    def _worth(self, holding: str | None) -> list[str]:
+        """Meshes to solve that may prove each other, if likely cheaper than what holds."""
+        if holding is None or holding in self.solved:
+            return []
+        meshes = self._meshes(holding)
+        sure, below = self._seconds(holding), meshes[meshes.index(holding) + 1 :]
+        for fine, coarse in pairwise(below):
+            if self._by_coarser(fine) or self.verdict(fine).error == inf:
+                continue
+            new = [name for name in (coarse, fine) if name not in self.solved]
+            own = sum(self._seconds(name) for name in new)
+            if own + (1 - self.verdict(fine).chance) * sure < sure:
+                return new
+        return []
+
+    def _worth_a_look(self, holding: str | None) -> tuple[str, str] | None:
+        """A rung that may do, and a better one by which it is checked at a few states of many."""
         if holding is None or holding in self.solved:
             return None
-        sure = self._seconds(holding)
+        sure, count = self._seconds(holding), len(self.asked.rungs[holding].path.stops)
+        share = (START + TELLING) / (START + count)
+        if share > CHEAP or self._own_error(holding) > self.asked.tolerance / 2:
+            return None
         for name in self.names[: self.names.index(holding)]:
             verdict, known = self.verdict(name), self.asked.guesses[name]
             if not verdict.by.startswith("estimated") or known is None:
                 continue
             chance = verdict.chance * (1 - known.lost)
             own = 0.0 if name in self.solved else self._seconds(name)
-            expected = own + AT_STATES * sure + (1 - chance) * sure
-            if expected < sure and self._own_error(holding, nan) <= self.asked.tolerance / 2:
+            if own + share * sure + (1 - chance) * sure < sure:
                 return name, holding
         return None
 
     def _unguessed(self) -> str:
-        """Where to begin without a guess: the next to the finest mesh of the best model, or it."""
-        best = self.asked.rungs[self.names[-1]].model
-        meshes = [name for name in self.names if self.asked.rungs[name].model == best]
-        name = meshes[max(0, len(meshes) - 2)]
-        failed = (name, meshes[-1]) in self.checked or name in self.solved
-        return meshes[-1] if failed and meshes[-1] in self.solved else name
+        """Without a guess: the meshes of the best model, from the coarsest to the finest."""
+        meshes = self._meshes(self.names[-1])[::-1]
+        return next((name for name in meshes if name not in self.solved), meshes[-1])
 
     def _best(self) -> str:
         """The most exact of those that have most states."""

@@ -10,6 +10,7 @@ from solver.load_path import LoadPath
 from solver.record import Solution, unreached
 from solver.status import CaseStatus, Flag, StateStatus
 from workflow.plan import promise as module
+from workflow.plan.effect_costs import MESHES
 from workflow.plan.judged import FOLLOWS, difference
 from workflow.plan.like_muscles import Guess
 from workflow.plan.promise import Promise, climb, telling
@@ -17,7 +18,13 @@ from workflow.plan.promise import Promise, climb, telling
 STOPS = (0.0, 0.05, 0.1, 0.15, 0.2)
 FORCE = np.array([600.0, 400.0, 250.0, 120.0, 10.0])
 RUNGS = {"cylinder": "cylinder", "membrane": "membrane", "solid": "solid", "solid, finer": "solid"}
-SECONDS = {"cylinder": 0.1, "membrane": 0.2, "solid": 1.0, "solid, finer": 3.0}
+SECONDS = {
+    "cylinder": 0.1,
+    "membrane": 0.2,
+    "solid, coarser": 0.9,
+    "solid": 1.0,
+    "solid, finer": 5.0,
+}
 
 
 @pytest.fixture
@@ -102,40 +109,76 @@ def test_a_smoothed_state_is_none_of_a_cheap_rung(rungs, monkeypatch):
     assert kept(rungs, Solver(rungs, smoothed=("membrane", "solid")), 0.02).rung == "solid"
 
 
-def test_what_may_do_is_checked_where_that_is_cheaper(rungs, monkeypatch):
+@pytest.fixture
+def many(rungs, monkeypatch):
+    """The same curve with so many states that a look at a few of them is cheap."""
+    stops = tuple(round(0.2 * k / 80, 6) for k in range(81))
+    monkeypatch.setattr(__name__ + ".STOPS", stops)
+    monkeypatch.setattr(__name__ + ".FORCE", 600 - 2950 * np.array(stops))
+    return {n: replace(c, path=replace(c.path, stops=stops)) for n, c in rungs.items()}
+
+
+def test_what_may_do_is_checked_at_a_few_states_of_many(many, monkeypatch):
     guessed(monkeypatch, cylinder=0.1, membrane=0.006, solid=1e-4, solid_finer=1e-5)
-    solver = Solver(rungs, membrane=0.006)
-    end = kept(rungs, solver, 0.01)
-    assert solver.asked == [("membrane", 5), ("solid", 3)]
+    solver = Solver(many, membrane=0.006)
+    end = kept(many, solver, 0.01)
+    assert [name for name, _ in solver.asked] == ["membrane", "solid"]
+    assert solver.asked[1][1] <= 4
     assert (end.rung, end.holds) == ("membrane", True)
     assert end.by == "measured here by solid at telling states"
     assert end.error == pytest.approx(0.006 / 1.006 + 2e-4)
 
 
-def test_a_check_that_fails_is_climbed_over(rungs, monkeypatch):
+def test_a_check_that_fails_is_climbed_over(many, monkeypatch):
     guessed(monkeypatch, cylinder=0.1, membrane=0.006, solid=1e-4, solid_finer=1e-5)
-    solver = Solver(rungs, membrane=0.013)
-    end = kept(rungs, solver, 0.01)
-    assert solver.asked == [("membrane", 5), ("solid", 3), ("solid", 5)]
+    solver = Solver(many, membrane=0.013)
+    end = kept(many, solver, 0.01)
+    assert [name for name, _ in solver.asked] == ["membrane", "solid", "solid"]
     assert (end.rung, end.holds) == ("solid", True)
     assert end.verdicts["membrane"].by == "measured here by solid at all states"
 
 
-def test_what_no_muscles_are_like_is_measured_by_two_meshes(rungs, monkeypatch):
+def test_of_few_states_the_better_rung_is_solved_at_once(rungs, monkeypatch):
+    guessed(monkeypatch, cylinder=0.1, membrane=0.006, solid=1e-4, solid_finer=1e-5)
+    solver = Solver(rungs, membrane=0.006)
+    assert kept(rungs, solver, 0.01).rung == "solid"
+    assert solver.asked == [("solid", 5)]
+
+
+@pytest.fixture
+def meshes(rungs):
+    """With the coarser mesh of the planner, in its place."""
+    numerics = replace(rungs["solid"].numerics, **MESHES["coarser"])
+    coarser = replace(rungs["solid"], numerics=numerics)
+    first = {name: rungs[name] for name in ("cylinder", "membrane")}
+    return first | {"solid, coarser": coarser} | {n: rungs[n] for n in ("solid", "solid, finer")}
+
+
+def test_what_no_muscles_are_like_is_measured_by_two_meshes(meshes, monkeypatch):
     guessed(monkeypatch)
-    solver = Solver(rungs, solid=0.003)
-    end = kept(rungs, solver, 0.01)
-    assert solver.asked == [("solid", 5), ("solid, finer", 3)]
+    solver = Solver(meshes, solid_coarser=0.003)
+    end = kept(meshes, solver, 0.01)
+    assert solver.asked == [("solid, coarser", 5), ("solid", 5)]
     assert (end.rung, end.holds) == ("solid", True)
-    assert end.error == pytest.approx(0.003 * 4 / 3 / 1.003)
+    assert end.by == "measured here by solid, coarser"
+    assert end.error == pytest.approx(2 * 0.003 / 1.003)
 
 
-def test_the_best_there_is_is_no_promise_kept(rungs, monkeypatch):
+def test_two_meshes_are_cheaper_than_the_finest(meshes, monkeypatch):
+    known = {"solid_coarser": 9e-3, "solid": 6e-3, "solid_finer": 1e-4}
+    guessed(monkeypatch, cylinder=0.1, membrane=0.03, **known)
+    solver = Solver(meshes, solid_coarser=0.002)
+    end = kept(meshes, solver, 0.01)
+    assert solver.asked == [("solid, coarser", 5), ("solid", 5)]
+    assert (end.rung, end.by) == ("solid", "measured here by solid, coarser")
+
+
+def test_the_best_there_is_is_no_promise_kept(meshes, monkeypatch):
     guessed(monkeypatch)
-    solver = Solver(rungs, solid=0.3)
-    end = kept(rungs, solver, 0.01)
+    solver = Solver(meshes, solid_coarser=0.9, solid=0.3)
+    end = kept(meshes, solver, 0.01)
     assert (end.rung, end.holds) == ("solid, finer", False)
-    assert end.error == pytest.approx(0.1, rel=0.4)
+    assert end.error == pytest.approx(0.5 * 0.3 / 1.3)
 
 
 def test_where_no_rung_has_a_state_that_is_said(rungs, monkeypatch):

@@ -30,22 +30,28 @@ def tables(study: Study, solved: Sequence[Solved]) -> dict[str, pd.DataFrame]:
 def limit(setups: Mapping[str, Solved]) -> Solution:
     """What the solid converges to: its values on two meshes, one twice as fine, extrapolated.
 
-    By the finest mesh that there is and the next coarser one of the family; statuses of the finer.
+    By the finest mesh that there is and the next coarser one of the family. States that only the
+    coarser one has are as it has them: a mesh that loses them is no truth.
     """
     fine, coarse, ratio = setups["solid, finer"].solution, setups["solid"].solution, 2.0
     if REFERENCE in setups:
         fine, coarse, ratio = setups[REFERENCE].solution, fine, 1.5
     states = {
-        name: values + (values - coarse.states[name]) / (ratio**ORDER - 1)
-        if np.isfinite(coarse.states[name]).all()
-        else values
+        name: np.where(
+            np.isfinite(more := (values - coarse.states[name]) / (ratio**ORDER - 1)),
+            values + more,
+            values,
+        )
         for name, values in fine.states.items()
     }
+    only = is_valid(coarse) & ~is_valid(fine)
+    states = {name: np.where(only, coarse.states[name], values) for name, values in states.items()}
+    pairs = zip(only, coarse.state_status, fine.state_status, strict=True)
     return Solution(
         status=fine.status,
         reason=fine.reason,
         states=states,
-        state_status=fine.state_status,
+        state_status=[of_coarse if lost else own for lost, of_coarse, own in pairs],
         flags=fine.flags,
     )
 
