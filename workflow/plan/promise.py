@@ -246,7 +246,7 @@ class _Climb:
         return Verdict(error, float(error <= self.asked.tolerance), f"measured here by {coarser}")
 
     def _own_error(self, name: str) -> float:
-        """What a rung may itself be off: by a coarser mesh, by like muscles; infinite if unknown."""
+        """What a rung may itself be off: by a coarser mesh, by like muscles; else infinite."""
         if measured := self._by_coarser(name):
             return measured.error
         known = self.asked.guesses[name]
