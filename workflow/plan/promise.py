@@ -204,12 +204,11 @@ class _Climb:
         return Verdict(known.high, known.chance(self.asked.tolerance), by)
 
     def _lost(self, name: str) -> int:
-        """States of a solved rung that are no answer, unless the best that is solved has none."""
+        """States of a solved rung that are no answer, unless the best of all has none either."""
         case = self.asked.rungs[name]
         good = is_valid(self.solved[name], smoothed=case.model == "solid")
-        for better in self._above(name):
-            if better in self.solved:
-                good |= ~is_valid(self.solved[better])
+        if best := self.solved.get(self.names[-1]):
+            good |= ~is_valid(best)
         if ZERO not in self.asked.judged:
             good = good[: len(case.path.stops)]
         return int((~good).sum())

@@ -232,6 +232,7 @@ def _tasks(cases: Cases, limits: Limits) -> list[Task]:
     # After what they may find solved; of those on one curve the loosest first, one after the other.
     climbed = {key: p for key in solved if (p := cases[key].promise)}
     for key, promise in sorted(climbed.items(), key=lambda each: (-each[1].tolerance, each[0])):
+        _ = promise.guesses  # once, for all processes: they are made of the same laws
         do, label = partial(_climb, key, cases[key], limits), cases[key].label
         curve = next(reversed(promise.rungs.values())).key
         tasks.append(Task(name=key, label=label, do=do, after=curves.get(curve)))
@@ -256,7 +257,7 @@ def _climb(key: str, asked: Planned, limits: Limits) -> int:
             return record.read(_record(case.key))[1]
         if tried.mesh and why_meshed(tried) and _mesh(tried, limits):
             raise climbs.Unsolved
-        if pool.alone(partial(_solve, case.key, tried, limits)):  # so its time is its own
+        if _solve(case.key, tried, limits):
             raise climbs.Unsolved
         return record.read(_record(case.key))[1]
 

@@ -61,7 +61,7 @@ def may_know(promise: Promise, case: Case) -> bool:
 
 def climb(promise: Promise, solve: Solve, known: Known) -> int:
     """Do it, and write how it has ended; 1 if a case has no record, for a reason outside of it."""
-    start, path = time.monotonic(), path_of(promise.key)
+    start, used, path = time.monotonic(), time.process_time(), path_of(promise.key)
     damage.remove(path)
     asked: dict[str, str] = {}  # status by record
     solving = 0.0
@@ -80,7 +80,7 @@ def climb(promise: Promise, solve: Solve, known: Known) -> int:
         status = asked.get(case.key) or counted(case).status.value
     except Unsolved:
         return 1
-    own = time.process_time() - solving
+    own = time.process_time() - used - solving
     found = end.as_dict() | {"record": case.key, "tolerance": promise.tolerance}
     found |= {"seconds": {key: seconds(key) for key in asked}, "own_seconds": own}
     with atomic_write(path) as beside:

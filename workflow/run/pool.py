@@ -42,12 +42,6 @@ class Ended:
     seconds: float
 
 
-def alone(do: Callable[[], int]) -> int:
-    """Do one thing in a process of its own, and wait for it; its status, negative for a signal."""
-    number = fork(do)
-    return os.waitstatus_to_exitcode(os.waitpid(number, 0)[1])
-
-
 def run(tasks: Iterable[Task], cores: int, begins: Callable[[Task], None]) -> Iterator[Ended]:
     """Do tasks, in this order as far as they need not wait; whatever one does, others go on.
 
