@@ -163,7 +163,7 @@ def mesh_errors(case: Case, solution: Solution, rung: str, quantity: str) -> tup
     law = _state_law(rung, quantity)
     groups, kind = likeness.groups(case), str(case.path.kind)
     rows = [groups | likeness.of_state(case, solution, k) for k in range(count)]
-    known = np.array([all(np.isfinite(list(row.values()))) for row in rows])
+    known = np.array([_is_like_state(row, rung) for row in rows])
     found = np.full(count, nan)
     if known.any():
         features = np.array(
@@ -209,6 +209,21 @@ def _is_like(case: Case) -> bool:
         if not low - more <= value <= high + more:
             return False
     return True
+
+
+def _is_like_state(row: Mapping[str, float], rung: str) -> bool:
+    """Whether a state is among those of the table, or hardly beyond."""
+    inside = (
+        low - BEYOND * (high - low) <= row[name] <= high + BEYOND * (high - low)
+        for name, (low, high) in _state_ranges(rung).items()
+    )
+    return all(np.isfinite(list(row.values()))) and all(inside)
+
+
+@cache
+def _state_ranges(rung: str) -> dict[str, tuple[float, float]]:
+    values = {name: [float(row[name]) for row in _states()[rung]] for name in OF_STATE}
+    return {name: (min(each), max(each)) for name, each in values.items()}
 
 
 @cache
