@@ -336,6 +336,8 @@ def _written(file: StudyFile) -> Iterator[tuple[Keys, Any]]:
         for name, entry in entries.items():
             for key in entry.model_fields_set:
                 value = getattr(entry, key)
+                if (section, key) == ("map", "tolerance"):
+                    continue  # of a force, not a share
                 if key == "layers":
                     for number, layer in enumerate(value or ()):
                         for own in layer.model_fields_set:
