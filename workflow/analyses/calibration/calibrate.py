@@ -103,7 +103,8 @@ def calibrate(study: Study, name: str) -> Calibration:
         try:
             if entry.fit_pressure is not None:
                 fitted = fit(parameters, _residuals(name, entry, found, forward))
-                used = points.near(entry.fit_pressure)
+                at = points.table["contraction"].to_numpy()
+                used = points.near(entry.fit_pressure) & (at >= 0) & (at <= bench.FURTHEST)
             else:
                 used = _usable(name, entry, points, forward)
                 of_points = _of_points(entry, points, used, forward)
