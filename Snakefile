@@ -54,6 +54,6 @@ rule everything:
     default_target: REPORTING
     input:
         rules.all.input,
-        REPORTED if REPORTING else [f"{RESULTS}/report/{page}.html" for page in PAGES],
+        REPORTED if REPORTING else [f"{RESULTS}/report/{page}.html" for page in USUAL],
     message:
         "All is there; snakemake --report results/report.html makes the report"

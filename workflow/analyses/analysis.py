@@ -99,6 +99,7 @@ class Analysis:
     page : which of its tables its page has
     on_figures : whether its own table stands on the pages of the figures too that its rows name
     in_dataset : whether its own table is a group of the dataset as well
+    takes_hours : so that it runs where it is asked for by name, and not with ``everything``
     """
 
     name: str
@@ -111,6 +112,7 @@ class Analysis:
     page: tuple[str, ...] = ()
     on_figures: bool = False
     in_dataset: bool = False
+    takes_hours: bool = False
 
     @property
     def modules(self) -> list[str]:

@@ -204,11 +204,13 @@ class _Climb:
         return Verdict(known.high, known.chance(self.asked.tolerance), by)
 
     def _lost(self, name: str) -> int:
-        """States of a solved rung that are no answer, unless the best of all has none either."""
+        """States of a solved rung that are no answer, unless no mesh of the best model has one."""
         case = self.asked.rungs[name]
         good = is_valid(self.solved[name], smoothed=case.model == "solid")
-        if best := self.solved.get(self.names[-1]):
-            good |= ~is_valid(best)
+        every = self._meshes(self.names[-1])
+        meshes = [each for each in every if each in self.solved]
+        if self.names[-1] in meshes and len(meshes) >= min(2, len(every)):
+            good |= ~np.any([is_valid(self.solved[n]) for n in meshes], axis=0)
         if ZERO not in self.asked.judged:
             good = good[: len(case.path.stops)]
         return int((~good).sum())

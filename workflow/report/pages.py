@@ -50,6 +50,8 @@ def of_study(plan: Plan, results: Path, drawn: Iterable[str], tables: Iterable[s
         caption = caption_of(name)
         pages.append(Page(name, CHAPTERS[name], name.capitalize(), caption, (), (table,)))
     for each in fitting:
+        if not (each.figures or each.page):
+            continue
         pictures = tuple(results / f"figures/{picture}.png" for picture in each.figures)
         own = tuple(results / f"tables/{table}.csv" for table in each.page)
         pages.append(Page(each.name, each.chapter, each.title, each.caption, pictures, own))

@@ -160,7 +160,7 @@ def added_to(page):
     if page != "failures":
         return []
     fitting = [each for each in ANALYSES.values() if each.fits(PLAN.study) and each.solves_cases]
-    return [f"{RESULTS}/tables/{each.failures}" for each in fitting]
+    return [f"{RESULTS}/tables/{each.failures}" for each in fitting if not each.takes_hours]
 
 
 def reported(page):

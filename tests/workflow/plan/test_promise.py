@@ -195,6 +195,14 @@ def test_a_state_that_no_rung_has_is_no_failure_of_one(rungs, monkeypatch):
     assert end.verdicts["membrane"].by == by
 
 
+def test_the_finest_mesh_may_lose_what_a_coarser_one_has(meshes, monkeypatch):
+    guessed(monkeypatch, cylinder=0.1, membrane=0.03, solid_coarser=0.02, solid_finer=1e-4)
+    solver = Solver(meshes, lost=("solid, finer",), solid_coarser=0.004)
+    end = kept(meshes, solver, 0.01)
+    assert (end.rung, end.holds) == ("solid, coarser", True)
+    assert end.verdicts["solid, finer"].error == inf
+
+
 def test_one_model_alone_is_not_known(rungs, monkeypatch):
     guessed(monkeypatch)
     solver = Solver(rungs)

@@ -6,5 +6,6 @@ ANALYSIS = Analysis(
     name="ladder",
     title="Ladder of models",
     chapter="4 Effects",
+    takes_hours=True,
     tables={"ladder": None, "ladder_states": None},
 )

@@ -17,6 +17,7 @@ ANALYSIS = _Promises(
     name="promise",
     title="Promises",
     chapter="4 Effects",
+    takes_hours=True,
     tables={"promise": None, "promise_summary": "%.4g"},
     figures=("promise",),
     page=("promise_summary",),
