@@ -9,7 +9,7 @@ ROOT = Path(__file__).parents[2]
 FIGURES = ROOT / "results/figures"
 PARTS = {  # figure: what of it is shown, from the left, top, right, bottom as shares; its title
     "fig03": (0.0, 0.40, 0.43, 0.99, "a muscle from a table of settings"),
-    "fig05": (0.0, 0.208, 0.85, 0.312, "stress in its wall, 0.3 MPa and 10 % contraction"),
+    "fig05": (0.0, 0.183, 0.85, 0.316, "largest principal stress in its wall"),
 }
 COLOURS = {0.2: "#0072b2", 0.3: "#d55e00", 0.4: "#009e73"}  # MPa
 
