@@ -95,7 +95,7 @@ def wait(process: subprocess.Popen[bytes], seconds: float) -> int:
     except OSError:  # a kernel before Linux 5.3
         return process.wait(seconds)
     try:
-        if not select.select([handle], [], [], seconds)[0]:
+        if not select.select([handle], [], [], min(seconds, threading.TIMEOUT_MAX))[0]:
             raise subprocess.TimeoutExpired(process.args, seconds)
     finally:
         os.close(handle)

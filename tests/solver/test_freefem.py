@@ -2,6 +2,7 @@
 
 import os
 import re
+import resource
 import signal
 import time
 from pathlib import Path
@@ -30,7 +31,8 @@ def test_a_program_runs_in_its_folder(run, tmp_path):
     usage = run('ofstream out("found.txt"); out << 1 + 1 << endl;')
     assert (tmp_path / "found.txt").read_text() == "2\n"
     assert 0 < usage.cpu_seconds <= usage.seconds + 1
-    assert 5 < usage.peak_memory < 500
+    ours = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024  # a child begins as a copy
+    assert 5 < usage.peak_memory < max(500, 1.1 * ours)
 
 
 def test_flags_arrive_to_the_last_digit(run, tmp_path):

@@ -120,9 +120,9 @@ def sheet(
     if curve.contraction.size < 2 or curve.contraction[0] > 0:
         why = solution.reason or "it has no state at its initial length"
         raise StudyError(f"{name} at {case.path.held:g} MPa by {case.model}: no sheet, as {why}")
-    for name in ("force", "stiffness", "volume", "force_by_pressure", "energy"):
-        if not np.isfinite(curve.values(name)).all():
-            raise StudyError(f"{name} is not known of all states of {case.model}: no sheet")
+    for known in ("force", "stiffness", "volume", "force_by_pressure", "energy"):
+        if not np.isfinite(curve.values(known)).all():
+            raise StudyError(f"{known} is not known of all states of {case.model}: no sheet")
     free = curve.contraction_of(0.0)
     given = load is not None
     weight = HALF * float(curve.force(0.0)) if load is None else load
