@@ -311,12 +311,15 @@ def readable(line: str) -> str:
 
 
 def _limit(limits: Limits) -> None:
-    """No more memory than allowed, no endless file, no core file."""
+    """No endless file, no core file, and last no more memory than allowed.
+
+    A copy of a large process has more than that already, and gets no more to go on with.
+    """
     memory = int(limits.memory * MIB)
-    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     size = min(_largest_file(), LARGEST_FILE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
 
 
 def _largest_file() -> int:

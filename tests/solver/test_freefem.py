@@ -1,5 +1,6 @@
 """Running FreeFEM: what it is given, how it ends, and that nothing of it survives its limits."""
 
+import mmap
 import os
 import re
 import resource
@@ -243,3 +244,15 @@ def test_a_freefem_that_cannot_be_started_is_found(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(FreeFemError, match=r"cannot be run \(Exec format error\)"):
         freefem.check()
+
+
+def test_a_large_process_can_start_a_small_one(tmp_path):
+    """The limit is that of FreeFEM, not of the process that starts it."""
+    around = mmap.mmap(-1, 2 * LIMITS.memory * 2**20, flags=mmap.MAP_PRIVATE)
+    program = tmp_path / "program.edp"
+    program.write_text("real[int] x(1000);\n")
+    freefem.run(program, {}, tmp_path, tmp_path / "log.txt", LIMITS)
+    program.write_text("real[int] x(400000000); x = 1;\n")  # 3.2 GB
+    with pytest.raises(FreeFemError):
+        freefem.run(program, {}, tmp_path, tmp_path / "log.txt", LIMITS)
+    around.close()

@@ -230,7 +230,7 @@ ASK_FOR_SOME = (
 
 
 def test_no_other_file_names_a_model(tree):
-    """But analyses, answers and climbs, which ask for some, and the kind of mesh that is called cell."""
+    """But analyses, answers and climbs, which ask for some, and the kind of mesh called cell."""
     names = "|".join(name for name in MODELS if name != "cell")
     quoted = re.compile(rf"""["']({names})["']""")
     found = []
