@@ -194,26 +194,25 @@ def drawn(request, tmp_path_factory):
     """Name, what its words must have, and its figures, of a spoilt table."""
     name = request.param
     folder = tmp_path_factory.mktemp("analysis")
-    patch = pytest.MonkeyPatch()
-    patch.chdir(folder)
-    patch.setattr(sensitivity, "SAMPLES", 4)
-    each, study, solved = ANALYSES[name], load(STUDY), []
-    if each.solves_cases:
-        solved = [made_up(asked) for asked in analysis.cases(name, STUDY)]
-        tables = each.tabulated(study, solved)
-    else:
-        tables = {
-            "calibration_states": states_of_calibrations(),
-            "calibration_residuals": residuals_of_calibrations(),
-        }
-    main = next(iter(tables)) if name != "calibration" else "calibration_states"
-    wanted = SPOIL[name](tables[main])
-    write_costs(name, solved)
-    figures = each.drawn(solved, tables)
-    for stem, figure in figures.items():
-        style.save(figure, folder / f"{stem}.png")
-    yield name, wanted, figures, folder
-    patch.undo()
+    with pytest.MonkeyPatch.context() as patch:  # undone also where what follows fails
+        patch.chdir(folder)
+        patch.setattr(sensitivity, "SAMPLES", 4)
+        each, study, solved = ANALYSES[name], load(STUDY), []
+        if each.solves_cases:
+            solved = [made_up(asked) for asked in analysis.cases(name, STUDY)]
+            tables = each.tabulated(study, solved)
+        else:
+            tables = {
+                "calibration_states": states_of_calibrations(),
+                "calibration_residuals": residuals_of_calibrations(),
+            }
+        main = next(iter(tables)) if name != "calibration" else "calibration_states"
+        wanted = SPOIL[name](tables[main])
+        write_costs(name, solved)
+        figures = each.drawn(solved, tables)
+        for stem, figure in figures.items():
+            style.save(figure, folder / f"{stem}.png")
+        yield name, wanted, figures, folder
 
 
 def write_costs(name, solved):
