@@ -9,7 +9,9 @@ those of the meshes at their states. Both are of the analysis of the ladder:
 An error is a power law of the groups, fitted by least squares with a small ridge. How far a muscle
 is from that law is what it was on the muscles of the table, each left out of the fit in its turn
 (of states all those of a curve). So of muscles that are drawn as these were a known share has at
-most what is said; of muscles outside of their ranges nothing is said.
+most what is said. Of muscles outside of their ranges nothing is said, nor where the law would be
+carried further than any of its own muscles carries it (by the leverage of the fit): a muscle can be
+in every range and yet be like none.
 """
 
 import csv
@@ -78,6 +80,7 @@ class Law:
     spread : of ln(error) around the law where it was left out of the fit, rising, in the widths of
         its kind of path
     widths : root mean square of that, by kind of path
+    reach : largest leverage of a row of the fit
     """
 
     centre: Array
@@ -86,6 +89,7 @@ class Law:
     inverse: Array
     spread: Array
     widths: dict[str, float]
+    reach: float
 
     @classmethod
     def fit(cls, features: Array, errors: Array, blocks: Array, kinds: Array) -> "Law":
@@ -107,13 +111,16 @@ class Law:
             without[of] = left / np.sqrt(1 + np.diag(own))
         widths = {str(k): float(np.sqrt(np.mean(without[kinds == k] ** 2))) for k in set(kinds)}
         spread = np.sort(without / np.array([widths[str(kind)] for kind in kinds]))
-        return cls(centre, scale, factors, np.asarray(inverse), spread, widths)
+        reach = float(_leverage(x, inverse).max())
+        return cls(centre, scale, factors, np.asarray(inverse), spread, widths, reach)
 
     def at(self, features: Array, kind: str) -> tuple[Array, Array]:
-        """ln(error) by the law, and the width of its spread there."""
+        """ln(error) by the law, and the width of its spread there; both NaN beyond its reach."""
         x = _with_one((features - self.centre) / self.scale)
-        wider = np.sqrt(1 + np.einsum("ij,jk,ik->i", x, self.inverse, x))
-        return x @ self.factors, self.widths[kind] * wider
+        leverage = _leverage(x, self.inverse)
+        leverage[leverage > self.reach] = nan
+        known = np.where(np.isnan(leverage), nan, 1.0)
+        return known * (x @ self.factors), self.widths[kind] * np.sqrt(1 + leverage)
 
     def quantile(self, share: float) -> float:
         """What a share of new muscles does not exceed, of the spread."""
@@ -137,6 +144,8 @@ def _guess(case: Case, rung: str, quantity: str) -> Guess | None:
     if kind not in law.widths:
         return None
     value, wider = law.at(_features(likeness.groups(case), kind)[None], kind)
+    if np.isnan(value[0]):
+        return None
     median = exp(min(value[0] + wider[0] * law.quantile(0.5), MOST))
     near = _nearest(case, table)
     return Guess(
@@ -180,8 +189,10 @@ def _up_to(errors: Array, case: Case, rung: str, quantity: str) -> Array:
     if MODELS[case.model].fuller:  # what is known of its curves is not its mesh's alone
         return errors
     whole = _guess(case, rung, quantity)
-    factor = max(1.0, whole.high / errors.max()) if whole is not None else 1.0
-    return np.asarray(errors * factor ** (errors / errors.max()))
+    largest = np.nanmax(errors, initial=0.0)
+    if whole is None or not 0 < largest < whole.high:
+        return errors
+    return np.asarray(errors * (whole.high / largest) ** (errors / largest))
 
 
 def origin() -> str:
@@ -245,6 +256,11 @@ def _state_features(row: Mapping[str, float], kind: str) -> Array:
     ratio = row["at"] / row["pressure"]
     more = [row["pull"] ** 2, row["contraction"] ** 2, ratio, row["contraction"] * row["angle"]]
     return np.concatenate([_features(row, kind), own, more])
+
+
+def _leverage(x: Array, inverse: Array) -> Array:
+    """Of rows of a fit, and of others: how far they are from the middle of its rows."""
+    return np.asarray(np.einsum("ij,jk,ik->i", x, inverse, x))
 
 
 def _with_one(features: Array) -> Array:

@@ -282,7 +282,7 @@ def test_bands_hug_their_lines(drawn):
                         near = np.isclose(x[known], at)
                         assert near.any(), "a band where there is no line"
                         away = np.abs(y[known][near] - height).min()
-                        assert away <= 0.1 * np.abs(y[known]).max()  # estimated from like muscles
+                        assert away <= 0.05 * np.abs(y[known]).max()
                         assert height > 0 or ax.get_yscale() != "log"
 
 
