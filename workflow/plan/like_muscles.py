@@ -100,7 +100,7 @@ class Law:
         y = np.log(np.maximum(errors, LEAST))
         ridge = RIDGE * np.eye(x.shape[1])
         ridge[0, 0] = 0.0
-        inverse = np.linalg.inv(x.T @ x + ridge)
+        inverse = np.asarray(np.linalg.inv(x.T @ x + ridge), float)
         factors = np.asarray(inverse @ x.T @ y)
         off = y - x @ factors
         without = np.empty(len(y))
@@ -112,7 +112,7 @@ class Law:
         widths = {str(k): float(np.sqrt(np.mean(without[kinds == k] ** 2))) for k in set(kinds)}
         spread = np.sort(without / np.array([widths[str(kind)] for kind in kinds]))
         reach = float(_leverage(x, inverse).max())
-        return cls(centre, scale, factors, np.asarray(inverse), spread, widths, reach)
+        return cls(centre, scale, factors, inverse, spread, widths, reach)
 
     def at(self, features: Array, kind: str) -> tuple[Array, Array]:
         """ln(error) by the law, and the width of its spread there; both NaN beyond its reach."""
