@@ -221,16 +221,13 @@ ASK_FOR_SOME = (
     "solver/models/",
     "workflow/analyses/",
     "workflow/answers/",
-    "workflow/plan/judged.py",  # these three: of which models a climb is made
-    "workflow/plan/model_choice.py",
-    "workflow/plan/promise.py",
     "workflow/programs/fit_memory.py",
     "workflow/programs/sheet.py",
 )
 
 
 def test_no_other_file_names_a_model(tree):
-    """But analyses, answers and climbs, which ask for some, and the kind of mesh called cell."""
+    """But analyses and answers, which ask for some, and the kind of mesh called cell."""
     names = "|".join(name for name in MODELS if name != "cell")
     quoted = re.compile(rf"""["']({names})["']""")
     found = []

@@ -187,7 +187,7 @@ def _of_paper(plan: Plan, scene: Scene) -> Iterator[str]:
         for regime, path, effect in known
         if (regime, path) == ("normal", scene.kind)
         and effect in EFFECTS
-        and effect not in ("end_caps", "cap_geometry")
+        and effect not in model_choice.CAPS
         and not isnan(value := getattr(known[regime, path, effect], name))
     ]
     yield f"  effects  leaving out, on the paper's muscle and not this one: {', '.join(found)}"

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from solver.case import Case
 from solver.load_path import ZERO_FORCE
+from solver.models import MODELS
 from solver.record import Solution
 from solver.status import Flag, StateStatus
 
@@ -42,10 +43,16 @@ def variable_of(case: Case, quantity: str) -> str:
     return case.path.kind.follows if quantity == FOLLOWS else QUANTITIES[quantity]
 
 
-def is_valid(solution: Solution, *, smoothed: bool = True) -> NDArray[np.bool_]:
-    """Which states may be believed; ``smoothed``: also those that smoothing holds."""
-    pairs = zip(solution.state_status, solution.flags, strict=True)
-    return np.array([s in VALID and (smoothed or Flag.SMOOTHED not in f) for s, f in pairs])
+def is_valid(solution: Solution) -> NDArray[np.bool_]:
+    """Which states may be believed."""
+    return np.array([status in VALID for status in solution.state_status])
+
+
+def is_answer(case: Case, solution: Solution) -> NDArray[np.bool_]:
+    """Of these the ones that count: by a model that has a fuller one none that smoothing holds."""
+    if not MODELS[case.model].fuller:
+        return is_valid(solution)
+    return is_valid(solution) & [Flag.SMOOTHED not in flags for flags in solution.flags]
 
 
 def difference(
@@ -59,7 +66,7 @@ def difference(
     name, stops = variable_of(case, quantity), len(case.path.stops)
     values, exact = solution.states[name], better.states[name]
     fine = is_valid(better)
-    good = is_valid(solution, smoothed=case.model == "solid")[numbers]
+    good = is_answer(case, solution)[numbers]
     here = numbers >= stops if quantity == ZERO else numbers < stops
     if (fine & ~good & here).any():
         return float("inf")

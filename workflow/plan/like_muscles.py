@@ -200,6 +200,17 @@ def origin() -> str:
     return CURVES.read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
 
 
+def rungs() -> set[str]:
+    """Names of the rungs of the ladder whose errors are in the table."""
+    return set(_curves())
+
+
+@cache
+def seconds(rung: str) -> float:
+    """Of the processor, of a curve by a rung, on half of the muscles of the table at most."""
+    return float(np.median([float(row["seconds"]) for row in _curves()[rung]]))
+
+
 def ranges() -> dict[str, tuple[float, float]]:
     """Of the groups in the table."""
     rows = [row for table in _curves().values() for row in table]

@@ -1,10 +1,10 @@
 """Which model, effects and mesh a scene gets: the cheapest that is exact enough for it.
 
-Pure: no files but the measured effects and errors (effect_costs.csv, mesh_error.csv) are read, and
-nothing is solved. The models form a ladder; going down it leaves out one effect after the other,
-and the error of a step is what leaving that effect out has changed in the analysis of effects, in
-the regimes that the scene touches. A scene that names its ``models`` gets those; its ``effects``
-hold for it all the same.
+Pure: no files but the measured effects and errors (effect_costs.csv, mesh_error.csv,
+like_muscles.csv) are read, and nothing is solved. The models form a ladder; going down it leaves
+out one effect after the other, and the error of a step is what leaving that effect out has changed
+in the analysis of effects, in the regimes that the scene touches. A scene that names its ``models``
+gets those; its ``effects`` hold for it all the same.
 
 The mesh alone may take a quarter of the tolerance (mesh_error.csv), so the mesh is the coarsest
 that does; the default meshes are those for the default tolerance.
@@ -22,6 +22,7 @@ from solver.models import MODELS
 from solver.models.model import BRAIDS
 from solver.numerics import Numerics
 from solver.refusal import UnsolvableCase
+from workflow.plan import like_muscles
 from workflow.plan.effect_costs import MESHES, MeasuredEffect, MeasuredEffects, load
 from workflow.plan.force_scale import error_factor
 from workflow.plan.mesh_error import share_of
@@ -63,7 +64,6 @@ def _rungs() -> Iterator[Rung]:
 
 
 RUNGS = {rung.name: rung for rung in _rungs()}
-CLIMBED = ("cylinder", "membrane", "solid, coarser", "solid, finer", "solid")  # by promise.py
 NO_CLIMB = {"stress", "deformed_shape", "sheet", "dynamic_stiffness"}
 DISCRETE = "discrete_threads"
 SMEARED = "isobaric", DISCRETE  # path and effect: measured at constant pressure only
@@ -138,6 +138,7 @@ def is_enough(estimate: Estimate, tolerance: float) -> bool:
 def promised(study: Study, scene: Scene) -> dict[str, tuple[Rung, ...]]:
     """Of a scene that leaves its model open the rungs that each muscle may climb, cheapest first.
 
+    It may climb those whose errors on muscles like it are known (workflow/plan/like_muscles.py).
     Empty where there is no climb: models are named, curves are in time, fields or sheets are asked
     for, an effect is forced that one rung alone has. There the choice is ``choose``'s.
     """
@@ -145,8 +146,9 @@ def promised(study: Study, scene: Scene) -> dict[str, tuple[Rung, ...]]:
         return {}
     if NO_CLIMB & set(scene.quantities):
         return {}
+    known = like_muscles.rungs()
     asked = [
-        rung for rung in RUNGS.values() if rung.name in CLIMBED and not refusal(rung.model, scene)
+        rung for rung in RUNGS.values() if rung.name in known and not refusal(rung.model, scene)
     ]
     found = {name: tuple(r for r in asked if _may_be(study, name, r)) for name in scene.muscles}
     return found if all(len(rungs) > 1 for rungs in found.values()) else {}

@@ -23,8 +23,8 @@ import numpy as np
 
 from solver.case import Case, canonical, digest
 from solver.record import Solution
-from workflow.plan.judged import FOLLOWS, ZERO, difference, is_valid, variable_of
-from workflow.plan.like_muscles import Guess, guess
+from workflow.plan.judged import FOLLOWS, ZERO, difference, is_answer, is_valid, variable_of
+from workflow.plan.like_muscles import Guess, guess, seconds
 
 CONFIDENT = 0.97  # share of like muscles on which a rung must hold to be taken without a check
 BY_COARSER = {  # error of a mesh by its difference from the next coarser one of the ladder:
@@ -33,9 +33,7 @@ BY_COARSER = {  # error of a mesh by its difference from the next coarser one of
 }
 START = 40  # states that cost as much as getting to the first one
 CHEAP = 0.6  # of the cost of all states: a check at a few of them that costs more is not worth it
-SECONDS = {"cylinder": 0.2, "membrane": 0.3, "solid, coarser": 0.5, "solid": 0.5}
 TELLING = 4  # states at most of a check
-DEAR = 1.3  # s, of a curve of what is not listed: for muscles that no others are like
 Solve = Callable[[Case], Solution]
 Known = Callable[[Case], Solution | None]
 
@@ -206,7 +204,7 @@ class _Climb:
     def _lost(self, name: str) -> int:
         """States of a solved rung that are no answer, unless no mesh of the best model has one."""
         case = self.asked.rungs[name]
-        good = is_valid(self.solved[name], smoothed=case.model == "solid")
+        good = is_answer(case, self.solved[name])
         every = self._meshes(self.names[-1])
         meshes = [each for each in every if each in self.solved]
         if self.names[-1] in meshes and len(meshes) >= min(2, len(every)):
@@ -323,8 +321,9 @@ class _Climb:
         return max((n for n in counts if counts[n] == most), key=self.names.index)
 
     def _seconds(self, name: str) -> float:
+        """Of the processor, by the muscles most like this one; else by all of the table."""
         known = self.asked.guesses[name]
-        return known.seconds if known else SECONDS.get(name, DEAR)
+        return known.seconds if known else seconds(name)
 
     # --- doing it ---------------------------------------------------------------------------------
 
@@ -341,8 +340,6 @@ class _Climb:
         case, own = self.asked.rungs[name], self._full(name)
         if self._lost(name):
             self.checked[name, better] = inf
-            return
-        if better in self.solved:
             return
         numbers = telling(case, own)
         path = self.asked.rungs[better].path

@@ -10,6 +10,7 @@ from solver import rubber
 from solver.load_path import LoadPath
 from solver.material import Thread
 from solver.record import unreached
+from workflow.analyses.ladder.cases import RUNGS as OF_LADDER
 from workflow.plan import like_muscles, likeness, mesh_error
 from workflow.plan.judged import FOLLOWS
 
@@ -32,6 +33,12 @@ def scaled(case, factor):
         braid=Braid(lead=factor * braid.lead, threads=braid.threads, layer_diameters=wider),
     )
     return replace(case, muscle=larger, thread=Thread(stiffness=factor**2 * case.thread.stiffness))
+
+
+def test_the_table_has_what_the_ladder_solves_and_finer_rungs_cost_more():
+    assert like_muscles.rungs() == set(OF_LADDER) == set(RUNGS)
+    costs = [like_muscles.seconds(rung) for rung in RUNGS]
+    assert costs == sorted(costs)
 
 
 def test_muscles_of_one_shape_have_one_guess(make_case):

@@ -11,7 +11,7 @@ from solver.record import Solution
 from workflow.analyses.analysis import Solved
 from workflow.analyses.ladder.cases import FINE_MEMBRANE, REFERENCE, RUNGS
 from workflow.plan import likeness
-from workflow.plan.judged import QUANTITIES, difference, is_valid
+from workflow.plan.judged import QUANTITIES, difference, is_answer, is_valid
 from workflow.study.contents import Study
 
 ORDER = 3.0  # of the solid's force where it is not observed; see ``limit``
@@ -65,7 +65,7 @@ def of_curve(setups: Mapping[str, Solved]) -> list[dict[str, Any]]:
             quantity: difference(case, solution, truth, quantity)
             for quantity in (likeness.FOLLOWS, *QUANTITIES)
         }
-        lost = is_valid(truth) & ~is_valid(solution, smoothed=case.model == "solid")
+        lost = is_valid(truth) & ~is_answer(case, solution)
         found.append(
             {
                 "curve": int(setups[name].asked.tags["curve"]),
