@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from workflow.plan.model_choice import RUNGS
-from workflow.plan.plan import Place, Plan, PlannedCase
+from workflow.plan.plan import WITHIN, Place, Plan, PlannedCase
 from workflow.study.folders import PROMISES
 
 
@@ -56,16 +56,10 @@ def _moved(place: Place, rung: str, taken: set[Place]) -> Place:
     Where another curve stands there already it keeps its tolerance in the name of its variant.
     """
     found = RUNGS[rung]
-    variant = place.variant.partition("_within_")[0]
-    variant = _without_mesh(variant) + (f"_{found.mesh}" if found.mesh != "default" else "")
+    variant = place.variant.rpartition(WITHIN)[0]
+    variant += f"_{found.mesh}" if found.mesh != "default" else ""
     moved = replace(place, model=found.model, variant=variant)
     return moved if moved not in taken else replace(moved, variant=place.variant)
-
-
-def _without_mesh(variant: str) -> str:
-    for mesh in {rung.mesh for rung in RUNGS.values()}:
-        variant = variant.removesuffix(f"_{mesh}")
-    return variant
 
 
 def _joined(there: PlannedCase | None, own: PlannedCase) -> PlannedCase:

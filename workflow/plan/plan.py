@@ -31,6 +31,7 @@ from workflow.study.schema import HELD_KEY, MEASURED, SHEET, SWEPT_KEY, Scene
 from workflow.study.study import load
 
 FIELDS = {"stress", "deformed_shape"}
+WITHIN = "_within_"  # in the name of a variant, after its own, while its climb has not ended
 
 
 @dataclass(frozen=True, order=True)
@@ -314,7 +315,9 @@ def _climbs(
             promise = Promise(tolerance, judged, cases)
             start = promise.start
             more = "".join(f"_{each}" for each in judged[1:])
-            pending = f"{labels[start].variant}_within_{tolerance:g}{more}"
+            of_no_mesh = replace(rungs[muscle][0], mesh="default")
+            own, _ = model_choice.on_rung(study, scene, variant, of_no_mesh)
+            pending = f"{own}{WITHIN}{tolerance:g}{more}"
             yield replace(labels[start], variant=pending), cases[start], promise
 
 

@@ -132,6 +132,21 @@ def test_what_has_not_ended_is_asked_for(folder):
     assert json.loads(climbs.path_of(next(iter(planned().promises))).read_text())["holds"]
 
 
+def test_a_variant_keeps_its_name_whatever_that_is(folder, monkeypatch):
+    """Also one that looks like a mesh of the planner, or like what stands for a climb."""
+    name = "on_a_coarser_or_within_a_finer"
+    variants = f"variants: {{{name}: {{effects: {{threads: two_way}}}}}}\nscenes:"
+    scene = f"  other: {{{SCENE}: [0, 0.1], tolerance: 0.01, variants: [{name}]}}\n"
+    Path("named.yaml").write_text(f"{MUSCLE}{variants}\n{scene}")
+    found = plan(load("named.yaml"))
+    (place,) = found.scenes["other"]
+    assert place.variant == f"{name}_within_0.01"
+    for rung, added in (("membrane", ""), ("solid, finer", "_finer")):
+        monkeypatch.setattr(settled, "outcome", lambda _, rung=rung: {"rung": rung})
+        (place,) = settled.settled(found).scenes["other"]
+        assert place.variant == name + added
+
+
 def test_a_lost_record_or_outcome_is_made_again(folder):
     """Last, since a climb that is done again may come to another rung, of those that are there."""
     found = planned()
