@@ -7,7 +7,7 @@ sleeve around it; are of Mooney-Rivlin's law or of Yeoh's.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +23,8 @@ from solver.material import Thread
 from solver.rubber.rubber_law import RubberLaw
 from workflow.study import fit
 
-RANGES = {  # name -> (low, high, whether logarithmic)
+Ranges = Mapping[str, tuple[float, float, bool]]  # name -> (low, high, whether logarithmic)
+RANGES: Ranges = {
     "inner_diameter": (6, 45, True),  # mm
     "wall": (0.05, 0.16, False),  # of the diameter
     "length": (4, 22, False),  # of the diameter
@@ -70,12 +71,17 @@ def curves(count: int, seed: int) -> Iterator[RandomCurve]:
         yield found
 
 
+def numbers(ranges: Ranges, point: Iterable[float]) -> dict[str, float]:
+    """Of a point of the unit cube, by name."""
+    return {
+        name: float(low * (high / low) ** u if logarithmic else low + (high - low) * u)
+        for (name, (low, high, logarithmic)), u in zip(ranges.items(), point, strict=True)
+    }
+
+
 def _curve(number: int, point: np.ndarray) -> RandomCurve | None:
     """Of a point of the unit cube; None if it cannot be built."""
-    v = {
-        name: float(low * (high / low) ** u if logarithmic else low + (high - low) * u)
-        for (name, (low, high, logarithmic)), u in zip(RANGES.items(), point, strict=True)
-    }
+    v = numbers(RANGES, point)
     kind, sleeved, yeoh = KINDS[number % 3], number // 3 % 2 == 1, number // 6 % 2 == 1
     diameter = round(v["inner_diameter"], 2)
     wall = round(v["wall"] * diameter, 3)

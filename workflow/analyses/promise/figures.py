@@ -7,15 +7,16 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from workflow.analyses.analysis import Solved
+from workflow.analyses.promise.cases import TOLERANCES
 from workflow.analyses.promise.table import NONE
 from workflow.figures import style
 
-LOOKS = {
-    0.05: {"color": "#0072b2", "marker": "o"},
-    0.02: {"color": "#009e73", "marker": "s"},
-    0.01: {"color": "#d55e00", "marker": "^"},
-    0.005: {"color": "black", "marker": "D"},
-}
+LOOKS = (  # of tolerances
+    {"color": "#0072b2", "marker": "o"},
+    {"color": "#009e73", "marker": "s"},
+    {"color": "#d55e00", "marker": "^"},
+    {"color": "black", "marker": "D"},
+)
 SMALLEST = 1e-6  # share; smaller errors are drawn at this one, as the axis is logarithmic
 
 
@@ -28,7 +29,7 @@ def overview(choices: pd.DataFrame, summary: pd.DataFrame) -> Figure:
     """Left errors of the choices, right seconds of the curves; in words what they come to."""
     figure = Figure(figsize=(style.FULL, 4.2), layout="constrained")
     left, right = figure.subplots(1, 2)
-    for tolerance, look in LOOKS.items():
+    for tolerance, look in zip(TOLERANCES, LOOKS, strict=True):
         here = choices[(choices["tolerance [1]"] == tolerance) & choices["promised"]]
         errors = here["true_error [1]"].clip(lower=SMALLEST)
         left.plot(

@@ -13,13 +13,13 @@ from scipy.stats import qmc
 
 from geometry.muscle import LayeredBraid, Muscle
 from solver import rubber
-from solver.load_path import LoadPath, PathKind
 from solver.numerics import Spread
 from solver.rubber.rubber_law import RubberLaw
+from workflow.analyses.random_muscles import Ranges, numbers
 from workflow.study import fit
 
 SEED = 20260914
-LIMITS = {  # name -> (low, high, logarithmic)
+LIMITS: Ranges = {
     "inner_diameter": (1, 50, True),  # mm
     "wall": (0.06, 0.35, False),  # of the diameter
     "length": (5, 40, False),  # of the diameter
@@ -43,10 +43,7 @@ def points(count: int) -> np.ndarray:
 
 def values(point: np.ndarray) -> Sample:
     """Numbers of a point."""
-    return {
-        name: float(low * (high / low) ** u if logarithmic else low + (high - low) * u)
-        for (name, (low, high, logarithmic)), u in zip(LIMITS.items(), point, strict=True)
-    }
+    return numbers(LIMITS, point)
 
 
 def muscle(sample: Sample) -> Muscle | None:
@@ -106,18 +103,3 @@ def law(sample: Sample) -> RubberLaw:
         {"law": "arruda_boyce", "mu": mu / ratio, "lambda_m": lock},
     )[int(which)]
     return rubber.from_dict(made)
-
-
-def path(sample: Sample, blocked: float) -> LoadPath:
-    """Three in five isobaric; the rest isometric or isotonic, under shares of a blocked force."""
-    pressure, choice = sample["pressure"], sample["path"]
-    share = choice % 1
-    rising = tuple(round(pressure * k / 8, 6) for k in range(1, 9))
-    if choice < 3:
-        stops = tuple(round(-0.05 + 0.025 * k, 3) for k in range(13))
-        return LoadPath(kind=PathKind.ISOBARIC, held=round(pressure, 6), stops=stops)
-    if choice < 4:
-        return LoadPath(kind=PathKind.ISOMETRIC, held=round(0.2 * share, 4), stops=rising)
-    return LoadPath(
-        kind=PathKind.ISOTONIC, held=float(f"{0.6 * share * blocked:.4g}"), stops=rising
-    )

@@ -26,6 +26,7 @@ from solver.memory import Memory
 from solver.numerics import Numerics, Spread
 from solver.rubber.rubber_law import RubberLaw
 from workflow.analyses.analysis import AnalysisCase
+from workflow.analyses.random_muscles import Ranges, numbers
 from workflow.analyses.robustness import any_muscle
 from workflow.study import fit
 from workflow.study.contents import Study
@@ -48,7 +49,7 @@ HYPERCUBE_MESH = SectionMesh(cap_step=0.25, growth=1.25, body_step=0.2)
 SEED = 20260101
 SAMPLES = 200
 REPEATED = 10  # every tenth sample is solved again on a finer mesh
-LIMITS = {  # of the hypercube: name -> (low, high, logarithmic)
+LIMITS: Ranges = {  # of the hypercube
     "inner_diameter": (8, 50, False),  # mm
     "wall": (0.04, 0.2, False),  # of the diameter
     "length": (3, 30, False),  # of the diameter
@@ -200,12 +201,13 @@ def _any_muscles() -> Iterator[AnalysisCase]:
         sample = any_muscle.values(point)
         while (muscle := any_muscle.muscle(sample)) is None:
             sample = any_muscle.values(again.random(len(any_muscle.LIMITS)))
-        blocked = abs(float(net.force(muscle, sample["pressure"], 0.0)))
+        pressure, choice = sample["pressure"], sample["path"]
+        load = float(f"{_load(muscle, pressure, choice):.4g}")
         case = Case(
             muscle=muscle,
             rubber=any_muscle.law(sample),
             thread=Thread(stiffness=any_muscle.stiffness(sample)),
-            path=any_muscle.path(sample, blocked),
+            path=_path(pressure, choice, load),
             model="solid",
         )
         yield from _of_sample(case, ANY, number, SectionMesh())
@@ -213,10 +215,7 @@ def _any_muscles() -> Iterator[AnalysisCase]:
 
 def _sample(point: np.ndarray) -> Case | None:
     """The case of a point of the unit cube; None if it cannot be built."""
-    v = {
-        name: low * (high / low) ** u if logarithmic else low + (high - low) * u
-        for (name, (low, high, logarithmic)), u in zip(LIMITS.items(), point, strict=True)
-    }
+    v = numbers(LIMITS, point)
     diameter, wall = v["inner_diameter"], v["wall"] * v["inner_diameter"]
     layers = (diameter + 2 * LAYERS[0] * wall, diameter + 2 * LAYERS[1] * wall)
     threads = round(v["threads"])
@@ -231,7 +230,7 @@ def _sample(point: np.ndarray) -> Case | None:
         braid=braid,
         cap_length=4 * wall,
     )
-    path = _path(muscle, v["pressure"], v["path"])
+    path = _path(v["pressure"], v["path"], round(_load(muscle, v["pressure"], v["path"]), 3))
     return Case(
         muscle=muscle,
         rubber=rubber.from_dict({"c10": v["c10"], "c01": v["c01"] * v["c10"]}),
@@ -243,17 +242,20 @@ def _sample(point: np.ndarray) -> Case | None:
     )
 
 
-def _path(muscle: Muscle, pressure: float, choice: float) -> LoadPath:
-    """Three in five isobaric; the rest isometric or isotonic, held where ``choice`` lies."""
-    share = choice % 1
+def _load(muscle: Muscle, pressure: float, choice: float) -> float:
+    """A share of what the net pulls with before it contracts [N], by where ``choice`` lies."""
+    return 0.6 * (choice % 1) * abs(float(net.force(muscle, pressure, 0.0)))
+
+
+def _path(pressure: float, choice: float, load: float) -> LoadPath:
+    """Three in five isobaric; the rest isometric, held where ``choice`` lies, or under a load."""
     rising = tuple(round(pressure * k / 8, 6) for k in range(1, 9))
     if choice < 3:
         stops = tuple(round(-0.05 + 0.025 * k, 3) for k in range(13))
         return LoadPath(kind=PathKind.ISOBARIC, held=round(pressure, 6), stops=stops)
     if choice < 4:
-        return LoadPath(kind=PathKind.ISOMETRIC, held=round(0.2 * share, 4), stops=rising)
-    load = 0.6 * share * abs(float(net.force(muscle, pressure, 0.0)))
-    return LoadPath(kind=PathKind.ISOTONIC, held=round(load, 3), stops=rising)
+        return LoadPath(kind=PathKind.ISOMETRIC, held=round(0.2 * (choice % 1), 4), stops=rising)
+    return LoadPath(kind=PathKind.ISOTONIC, held=load, stops=rising)
 
 
 def _halved(path: LoadPath) -> LoadPath:

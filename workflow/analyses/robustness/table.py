@@ -11,15 +11,12 @@ from geometry.muscle import Muscle
 from solver.load_path import Control
 from solver.status import CaseStatus, StateStatus
 from workflow.analyses.analysis import Solved
+from workflow.analyses.robustness.cases import ANY
 from workflow.data.states import SHOWN
 from workflow.study.contents import Study
 
 APART = 0.03  # share of the largest force from which a membrane is far from its solid
-MESH_APART = {
-    "named": 1e-3,
-    "hypercube": 5e-3,
-    "any muscle": 5e-3,
-}  # the same of a mesh from a finer one
+MESH_APART = {"named": 1e-3, "hypercube": 5e-3, ANY: 5e-3}  # the same of a mesh from a finer one
 NOTE_COLUMNS = [
     "set",
     "name",

@@ -42,9 +42,7 @@ def cases(study: Study) -> list[AnalysisCase]:
 
 
 def _case(study: Study, model: str, path: LoadPath, *, memory: bool = True, **more: Any) -> Case:
-    studied = study.muscles[MUSCLE]
-    studied = replace(studied, muscle=more.pop("muscle", studied.muscle))
-    return studied.case(path, model, memory=MEMORY if memory else None, **more)
+    return study.muscles[MUSCLE].case(path, model, memory=MEMORY if memory else None, **more)
 
 
 def cycle(kind: PathKind, held: float, end: float, period: float, count: int = CYCLES) -> LoadPath:
@@ -87,12 +85,13 @@ def sleeved(muscle: Muscle) -> Muscle:
 
 def _sleeves(study: Study) -> Iterator[AnalysisCase]:
     """Loops of force of a sleeve whose crossings rub; no rate enters."""
-    muscle = sleeved(study.muscles[MUSCLE].muscle)
+    studied = study.muscles[MUSCLE]
+    studied = replace(studied, muscle=sleeved(studied.muscle))
     for contact in CONTACTS:
         friction = Friction(coefficient=FRICTION, contact=contact)
         for pressure in PRESSURES:
             path = cycle(PathKind.ISOBARIC, pressure, FURTHEST, 2 * FURTHEST / RATES[1], 2)
-            case = _case(study, "cylinder", path, memory=False, friction=friction, muscle=muscle)
+            case = studied.case(path, "cylinder", memory=None, friction=friction)
             tags: dict[str, str | float] = {"set": "sleeve", "pressure": pressure}
             tags |= {"rate": RATES[1], "contact": contact}
             yield AnalysisCase(case, f"{pressure:g} MPa, contacts of {contact:g} mm", tags)
