@@ -98,7 +98,7 @@ def test_misses_cost_and_overestimate_are_counted_together(study, solved):
     assert summary.loc["dearest with hindsight a solid", "curves"] == 1
     assert summary.loc["dearest with hindsight another", "curves"] == 0
     drawing = figures.draw(solved, found)["promise"]
-    said = " ".join(ax.get_title("left") + ax.get_title() for ax in drawing.axes)
+    said = " ".join(text.get_text() for text in drawing.texts)
     assert "4 choices, 1 missed" in said
 
 
