@@ -256,3 +256,12 @@ def test_a_large_process_can_start_a_small_one(tmp_path):
     with pytest.raises(FreeFemError):
         freefem.run(program, {}, tmp_path, tmp_path / "log.txt", LIMITS)
     around.close()
+
+
+def test_the_limit_of_memory_is_the_last_that_a_process_gets(monkeypatch):
+    """What a copy of a large process does behind it may find no memory."""
+    given = []
+    monkeypatch.setattr(resource, "setrlimit", lambda kind, _: given.append(kind))
+    freefem._limit(LIMITS)
+    assert sorted(given[:-1]) == sorted([resource.RLIMIT_FSIZE, resource.RLIMIT_CORE])
+    assert given[-1] == resource.RLIMIT_AS
