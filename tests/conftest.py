@@ -17,7 +17,7 @@ import pytest
 
 from geometry.make import make
 from geometry.muscle import Braid, Muscle
-from solver import freefem
+from solver import freefem, in_time
 from solver.case import Case, digest
 from solver.load_path import LoadPath, Waypoint
 from solver.material import Thread
@@ -146,7 +146,7 @@ def solve_case(mesh_of: Callable[[Case], Path | None], shared: Path) -> Callable
 def run_program(
     mesh_of: Callable[[Case], Path | None], tmp_path_factory: pytest.TempPathFactory
 ) -> Callable[..., Path]:
-    """Runs a FreeFEM program with flags, effects and waypoints of a case; gives its folder."""
+    """Runs a FreeFEM program with flags, effects and way of a case; gives its folder."""
 
     def run(
         case: Case, program: Path | None = None, way: Sequence[Waypoint] = (), **more: float
@@ -154,6 +154,8 @@ def run_program(
         work = tmp_path_factory.mktemp(case.key)
         (work / "composition.idp").write_text(composition(case))
         (work / "waypoints.txt").write_text(waypoint_text(case, list(way)))
+        if case.path.history is not None:
+            in_time.write(case, work)
         model = MODELS[case.model]
         program = program or model.program
         mesh = mesh_of(case)

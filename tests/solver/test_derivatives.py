@@ -11,6 +11,10 @@ import pytest
 from geometry.mesh_settings import CellMesh, SectionMesh
 from geometry.muscle import LayeredBraid, Muscle
 from solver.effects import Effects
+from solver.friction import Friction
+from solver.history import History
+from solver.load_path import LoadPath
+from solver.memory import Memory
 from solver.numerics import Numerics
 
 EDP = Path(__file__).parent / "edp"
@@ -141,4 +145,47 @@ def test_sleeve_around_one_layer_in_the_wall(make_case, errors, model):
         pressure=0.3,
     )
     assert found["thread_stretch_max"] > 1.005
+    check(found, tolerance=1e-6)
+
+
+def in_time(make_case, model, **given):
+    """A case along a history: a tube in a sleeve that is narrower, and so taut."""
+    braid = LayeredBraid(
+        kinds=("sleeve",),
+        layer_diameters=(23.0,),
+        leads=(150.0,),
+        threads=(40,),
+        senses=(0,),
+        stiffness_shares=(0.5,),
+    )
+    muscle = Muscle(inner_diameter=20, wall_thickness=2, length=100, braid=braid)
+    history = History(times=(0.0, 1.0))
+    path = LoadPath(kind="isobaric", held=0.3, stops=(0.0, 0.1), history=history)
+    return make_case(model=model, muscle=muscle, path=path, numerics=COARSE, **given)
+
+
+@pytest.mark.parametrize("model", ["membrane", "solid"])
+def test_crossings_that_do_not_slip(make_case, errors, model):
+    """They are elastic then; of those that slip the tangent leaves out how the limit changes."""
+    friction = Friction(coefficient=2, contact=10, slip=0.1)
+    state = {"amplitude": 0.001, "contraction": -0.04, "pressure": 0.3}
+    multiplier = 0.1 if model == "solid" else 0.0
+    found = errors(in_time(make_case, model, friction=friction), multiplier=multiplier, **state)
+    assert 0.1 < found.pop("borne") < 0.95
+    check(found, tolerance=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("model", "volume"),
+    [("membrane", "compressible"), ("solid", "compressible"), ("solid", "incompressible")],
+)
+def test_branches_of_a_memory(make_case, errors, model, volume):
+    """In a step that has begun in another state; what they add to the energy is not in ``energy``."""
+    memory = Memory.flat(0.12, 1e-3, 1e3)
+    state = {"amplitude": 0.02, "contraction": 0.15, "pressure": 0.3}
+    multiplier = 0.1 if model == "solid" else 0.0
+    case = in_time(make_case, model, memory=memory, effects=Effects(volume=volume))
+    found = errors(case, multiplier=multiplier, step=0.1, **state)
+    for name in ("force", "cap_force"):
+        assert found.pop(name) > 1e-3
     check(found, tolerance=1e-6)
