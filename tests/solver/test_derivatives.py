@@ -180,7 +180,7 @@ def test_crossings_that_do_not_slip(make_case, errors, model):
     [("membrane", "compressible"), ("solid", "compressible"), ("solid", "incompressible")],
 )
 def test_branches_of_a_memory(make_case, errors, model, volume):
-    """In a step that has begun in another state; what they add to the energy is not in ``energy``."""
+    """In a step from another state; what they add to the energy is not in ``energy``."""
     memory = Memory.flat(0.12, 1e-3, 1e3)
     state = {"amplitude": 0.02, "contraction": 0.15, "pressure": 0.3}
     multiplier = 0.1 if model == "solid" else 0.0
