@@ -155,7 +155,9 @@ def _climb(asked: PlannedCase, end: Mapping[str, Any] | None) -> Iterator[str]:
     held = "is proved" if end["holds"] else "is the best there is, and not proved"
     yield f"    {end['rung']} {held}: {_share(end['error'])}, {end['by']}"
     tried = ", ".join(f"{name} at {count} states" for name, count in end["tried"]) or "nothing"
-    yield f"    solved {tried}; {sum(end['seconds'].values()):.2g} s of the processor"
+    cost = sum(end["seconds"].values())
+    spent = "what that took is not known" if isnan(cost) else f"{cost:.2g} s of the processor"
+    yield f"    solved {tried}; {spent}"
 
 
 def _left_out(promise: Promise, name: str) -> list[str]:

@@ -10,6 +10,7 @@ It is done again where the sources of a rung, or what guesses are made of, have 
 import json
 import time
 from functools import cache
+from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -93,8 +94,14 @@ def climb(promise: Promise, solve: Solve, known: Known) -> int:
 
 
 def seconds(key: str) -> float:
-    """Of the processor, by FreeFEM and Python, that the record of a case has taken."""
-    cost = json.loads((COST / f"{key}.json").read_text())
+    """Of the processor, by FreeFEM and Python, that the record of a case has taken.
+
+    NaN where that is not known: a job that is killed may leave a record without its cost.
+    """
+    try:
+        cost = json.loads((COST / f"{key}.json").read_text())
+    except (OSError, ValueError):
+        return nan
     parts = ("python_cpu_seconds", "solve_cpu_seconds", "freefem_cpu_seconds")
     return float(sum(cost.get(part, 0.0) for part in parts))
 

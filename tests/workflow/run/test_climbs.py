@@ -1,11 +1,13 @@
 """Climbs inside a batch: what they leave, what they find again, and what stands in its place."""
 
 import json
+from math import isnan
 from pathlib import Path
 
 import pytest
 
 from solver.freefem import Limits
+from workflow.analyses.ladder import take_over
 from workflow.data import dataset, records, settled
 from workflow.plan.explain import lines
 from workflow.plan.plan import plan
@@ -145,6 +147,22 @@ def test_a_variant_keeps_its_name_whatever_that_is(folder, monkeypatch):
         monkeypatch.setattr(settled, "outcome", lambda _, rung=rung: {"rung": rung})
         (place,) = settled.settled(found).scenes["other"]
         assert place.variant == name + added
+
+
+def test_a_record_is_one_though_its_cost_was_never_written(folder):
+    """As after a job that was killed between the two: nothing is solved again for it."""
+    found = planned()
+    key = found.scenes["loose"][next(iter(found.scenes["loose"]))]
+    for cost in Path("results/cost").iterdir():
+        cost.unlink()
+    climbs.path_of(key).unlink()
+    assert batches.solve(found.cases, 1, LIMITS, Path("costless.txt")) == 0
+    end = settled.outcome(key)
+    assert end["tried"] == []
+    assert isnan(end["seconds"][end["record"]])
+    assert "what that took is not known" in "\n".join(lines(planned(), settled.outcome))
+    with pytest.raises(StudyError, match=f"{end['record']}.json: .*snakemake ladder"):
+        take_over.cost_of(end["record"])
 
 
 def test_a_lost_record_or_outcome_is_made_again(folder):

@@ -2,6 +2,7 @@
 
 import csv
 import time
+from math import isnan
 from pathlib import Path
 
 from geometry.files import atomic_write
@@ -10,6 +11,7 @@ from solver.models import MODELS
 from workflow.plan.like_muscles import CURVES, STATES
 from workflow.run.climbs import seconds
 from workflow.study.errors import StudyError
+from workflow.study.folders import CASES, COST
 
 DIGITS = ".3g"
 
@@ -20,7 +22,7 @@ def take_over(tables: Path, curves: Path = CURVES, states: Path = STATES) -> Non
     Raises
     ------
     StudyError
-        If the analysis has not been evaluated.
+        If the analysis has not been evaluated, or what a case has cost is lost.
     """
     origin = f"# analysis of the ladder of {time.strftime('%Y-%m-%d')}, "
     origin += f"code {record.code_digest(*MODELS)}\n"
@@ -32,12 +34,23 @@ def take_over(tables: Path, curves: Path = CURVES, states: Path = STATES) -> Non
             rows = list(csv.DictReader(stream))
         for row in rows:
             if case := row.pop("case", ""):
-                row["seconds"] = f"{seconds(case):.2g}"
+                row["seconds"] = f"{cost_of(case):.2g}"
         with atomic_write(path) as beside, beside.open("w", newline="", encoding="utf-8") as out:
             out.write(origin)
             writer = csv.DictWriter(out, rows[0], lineterminator="\n")
             writer.writeheader()
             writer.writerows({n: _short(n, value) for n, value in row.items()} for row in rows)
+
+
+def cost_of(case: str) -> float:
+    """Seconds of a case, which the planner must know."""
+    found = seconds(case)
+    if isnan(found):
+        raise StudyError(
+            f"{COST / case}.json: there is no such cost; delete {CASES / case}.h5 and run "
+            "snakemake ladder"
+        )
+    return found
 
 
 def _short(name: str, value: str) -> str:
