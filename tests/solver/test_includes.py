@@ -69,7 +69,7 @@ def declared(file: str) -> tuple[frozenset[str], frozenset[str]]:
     own: set[str] = set()
     for macro in re.findall(rf"^macro\s+({WORD})", code, re.MULTILINE):
         shared.add(macro)
-    code = re.sub(r"^macro.*", "", code, flags=re.MULTILINE)
+    code = re.sub(r"^(macro|IFMACRO|ENDIFMACRO).*", "", code, flags=re.MULTILINE)
     code = re.sub(r'^(include|load) ""', "", code, flags=re.MULTILINE)
     for statement, depth in split(code, ";{}"):
         (shared if depth == 0 else own).update(names_of(statement))
