@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from geometry.muscle import Muscle
 from solver.case import Case
 from solver.load_path import PathKind
-from solver.record import Solution, unreached
+from solver.record import Solution, unreached, variables
 from solver.status import case_status, state_status
 
 
@@ -70,7 +70,7 @@ def bore(
 def solve(case: Case, d0: float | None = None) -> Solution:
     """Eq. (1) at every stop of a path; ``d0`` is D0 [mm], the inner diameter if left out."""
     contraction, pressure = _sweep[case.path.kind](case, d0)
-    states = unreached(case.path.states)
+    states = unreached(case.path.states, variables(case))
     states["contraction"], states["pressure"] = contraction, pressure
     states["force"] = force(case.muscle, pressure, contraction, d0)
     states["inner_diameter_inflated"] = bore(case.muscle, contraction, d0)

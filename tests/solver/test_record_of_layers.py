@@ -3,10 +3,13 @@
 from types import SimpleNamespace
 
 import h5py
+import numpy as np
 import pandas as pd
+import pytest
 
 from geometry.muscle import LayeredBraid, Muscle
 from solver import record
+from solver.models import MODELS
 from solver.models.cylinder.curve import solve
 from workflow.data import labelled, tidy
 from workflow.data.records import Curve
@@ -40,6 +43,24 @@ def test_it_is_read_as_it_was_written(make_case, tmp_path):
         found = file["parameters/muscle/braid"]
         assert [kind.decode() for kind in found["kinds"][()]] == ["embedded", "sleeve"]
         assert found["leads"].attrs["units"] == "mm"
+
+
+@pytest.mark.parametrize("model", ["geometric", "geometric_layers"])
+def test_a_model_that_knows_no_contact_says_nothing_of_it(make_case, tmp_path, model):
+    braid = LayeredBraid(
+        kinds=("sleeve",),
+        layer_diameters=(24.4,),
+        leads=(144.0,),
+        threads=(60,),
+        senses=(0,),
+        stiffness_shares=(1.0,),
+    )
+    muscle = Muscle(inner_diameter=20, wall_thickness=2, length=300, braid=braid)
+    case = make_case(model=model, muscle=muscle)
+    record.write(tmp_path / "case.h5", case, MODELS[model].solve(case))
+    states = record.read(tmp_path / "case.h5")[1].states
+    assert np.isnan(states["contact_pressure"]).all()
+    assert np.isfinite(states["force"]).all()
 
 
 def test_it_is_drawn_from_its_table():
