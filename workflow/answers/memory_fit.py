@@ -35,6 +35,7 @@ SHARES = (1e-4, 1.0)  # relaxation by decade, between which it is looked for
 FIRST, STEP = 0.05, 1e-2  # where it begins; of a derivative, as a share
 VARIES = {"contraction": 1e-3, "pressure": 1e-3}  # 1, MPa
 CONFIDENCE = 0.95
+NOTHING = 1e-6  # of the forces, what the solver leaves open
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +85,8 @@ def fit(
     Raises
     ------
     StudyError
-        If the file has no times or too few rows, or the model cannot follow it.
+        If the file has no times or too few rows, if the model cannot follow it, or if a memory
+        changes none of its forces.
     """
     if model not in MODELS or not MODELS[model].in_time:
         able = ", ".join(each for each in MODELS if MODELS[each].in_time)
@@ -96,7 +98,7 @@ def fit(
     kept = np.unique(np.linspace(0, len(times) - 1, min(len(times), MOST_ROWS)).round().astype(int))
     times, points = times[kept] - times[kept[0]], points[kept]
     pressure, contraction, measured = points.T
-    span = _decade(float(np.min(np.diff(times)))), _decade(float(times[-1]))
+    span = _span(file, times)
     trial = _Trial(study, muscle, Store(study, folder), model, span, start, times, points)
 
     def off(values: Array) -> Array:
@@ -113,6 +115,11 @@ def fit(
     share = float(np.exp(found.x[0]))
     left = off(found.x)
     slope = (off(found.x + STEP) - left) / (share * np.expm1(STEP))
+    if not np.abs(share * slope).max() > NOTHING * np.abs(trial.force(share)).max():
+        raise StudyError(
+            f"{file}: a memory changes none of its forces\n  allowed: a pressure or contraction "
+            f"that varies, or --start {Start.UNLOADED} where the first row was reached at once"
+        )
     memory = trial.memory(float(f"{share:.4g}"))
     values = np.linalg.lstsq(trial.columns, measured - trial.force(share), rcond=None)[0]
     interval = _interval(left, slope, 1 + trial.columns.shape[1])
@@ -131,9 +138,16 @@ def fit(
     )
 
 
-def _decade(time: float) -> float:
-    """The power of ten that is next."""
-    return float(f"{10.0 ** round(np.log10(time)):.12g}")
+def _span(file: str, times: Array) -> tuple[float, float]:
+    """Powers of ten next to the shortest step of a file and to its duration [s]."""
+    step, duration = float(np.min(np.diff(times))), float(times[-1])
+    low, high = (float(f"{10.0 ** round(np.log10(time)):.12g}") for time in (step, duration))
+    if not low < high:
+        raise StudyError(
+            f"{file}: it lasts {duration:g} s in steps of {step:g} s or more\n  allowed: a decade "
+            "of times at least"
+        )
+    return low, high
 
 
 class _Trial:
@@ -164,7 +178,7 @@ class _Trial:
             )
             self._case(FIRST)
         except UnsolvableCase as error:
-            raise StudyError(f"no model can follow the file: {error}") from None
+            raise StudyError(f"{model} cannot follow the file: {error}") from None
         varying = {"contraction": contraction, "pressure": pressure}
         kept = {name: v for name, v in varying.items() if np.ptp(v) > VARIES[name]}
         self.names = ["constant", *kept]

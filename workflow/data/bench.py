@@ -109,8 +109,8 @@ def read(name: str, length: float) -> ForceMap:
     if not user_file.text_of(path, measured.LARGEST).strip():
         raise StudyError(f"{path}: there is no force in it")
     table = measured.read(path, headers.OF_MUSCLES)
-    points, lines, said = _points(table, length)
-    return _map(path.stem, points, [f"{path}: {table.how}", *said], table, lines)
+    points, _, said = _points(table, length)
+    return _map(path.stem, points, [f"{path}: {table.how}", *said], table)
 
 
 def history(name: str, length: float) -> tuple[Array, Array, list[str]]:
@@ -128,10 +128,15 @@ def history(name: str, length: float) -> tuple[Array, Array, list[str]]:
     if "time" not in table.columns:
         raise table.refuse(_missing(table, "time"))
     points, lines, said = _points(table, length, also=("time",))
-    times = table.numbers("time")
-    times = times[np.isin(table.lines, lines)]
-    if not np.isfinite(times).all() or not (np.diff(times) > 0).all():
-        raise table.refuse("its times do not rise from row to row")
+    used = np.isin(table.lines, lines)
+    times = table.numbers("time")[used]
+    rises = np.isfinite(times) & (np.diff(times, prepend=-np.inf) > 0)
+    if not rises.all():
+        at = int(np.argmin(rises))
+        here = f"{times[at]:g} s stands" if np.isfinite(times[at]) else "no time stands"
+        after = f" after {times[at - 1]:g} s" if at else ""
+        text = f"its times do not rise from row to row; {here} here{after}"
+        raise table.refuse(text, int(np.array(table.lines)[used][at]))
     return times, points, [f"{path}: {table.how}", table.said("time", times), *said]
 
 
@@ -178,14 +183,8 @@ def _points(
     return points, [int(n) for n in lines[used]], said
 
 
-PLACES = (
-    "contraction",
-    "stroke",
-    "length",
-    "strain",
-    "extension",
-    "stretch",
-)  # first that is there
+# The first that there is
+PLACES = ("contraction", "stroke", "length", "strain", "extension", "stretch")
 
 
 def _missing(table: Table, quantity: str, more: str = "") -> str:
@@ -303,7 +302,7 @@ def _length_guess(low: float, high: float, factor: float, length: float) -> str:
 # --- a map of points -----------------------------------------------------------------------------
 
 
-def _map(name: str, points: Array, said: list[str], table: Table, lines: list[int]) -> Bench:
+def _map(name: str, points: Array, said: list[str], table: Table) -> Bench:
     """The map of some points, in the order in which they were measured."""
     close = NOISE * np.ptp([0, points[:, 0].max()])
     settings = _settings(points[:, 0], close)
@@ -336,7 +335,7 @@ def _map(name: str, points: Array, said: list[str], table: Table, lines: list[in
                 "neither pressures nor lengths are held: both change from row to row; give curves "
                 "at set pressures, or sweeps of the pressure at set lengths"
             )
-        curves = _of_sweeps(points, held, said, loops)
+        curves = _of_sweeps(points, held, said)
         if not curves:
             raise table.refuse("its sweeps of the pressure have no pressure in common")
         for members in held:
@@ -462,9 +461,7 @@ def _count(points: Array) -> str:
     return "1 point" if len(points) == 1 else f"{len(points)} points"
 
 
-def _of_sweeps(
-    points: Array, held: list[NDArray[np.intp]], said: list[str], loops: dict[float, float]
-) -> list[Array]:
+def _of_sweeps(points: Array, held: list[NDArray[np.intp]], said: list[str]) -> list[Array]:
     """Curves at some pressures, of sweeps of the pressure at held contractions."""
     sweeps = []
     for members in held:

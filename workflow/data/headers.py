@@ -62,13 +62,8 @@ FILLERS = SET | {
     *("test", "data", "channel", "ch", "y", "x", "z", "cell", "transducer", "working", "operating"),
 }
 REST = {"initial", "rest", "original", "unloaded", "nominal", "start", "free"}  # of a length
-SELDOM = {
-    "strain",
-    "stretch",
-    "suspect",
-    "test",
-    "extension",
-}  # what a unit by itself does not mean
+# What a unit by itself does not mean
+SELDOM = {"strain", "stretch", "suspect", "test", "extension"}
 SCATTER = {  # of a quantity, not itself
     *(
         "std",

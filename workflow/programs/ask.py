@@ -40,7 +40,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _share(text: str) -> float:
     """A share, as 0.01 or 1%."""
     number = text.removesuffix("%")
-    return float(number) / (1 if number == text else 100)
+    try:
+        return float(number) / (1 if number == text else 100)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no share, as 0.01 or 1%") from None
 
 
 def run(given: argparse.Namespace) -> int:

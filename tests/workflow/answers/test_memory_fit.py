@@ -67,10 +67,13 @@ def test_a_relaxation_does(study, solve_case, tmp_path):
     ("text", "said"),
     [
         (HEADER.replace("time [s]", "n"), "the column time is missing"),
-        (HEADER + "0,3,0,100\n0,3,1,90\n" + "2,3,1,80\n" * 9, "do not rise"),
+        (HEADER + "0,3,0,100\n0,3,1,90\n" + "2,3,1,80\n" * 9, ":3: .*not rise.* 0 s stands here"),
+        (HEADER + "0,3,0,100\n,3,1,90\n" + "2,3,1,80\n" * 9, ":3: .* no time stands here after 0"),
         (HEADER + "".join(f"{k},3,{k},{100 - k}\n" for k in range(4)), "at least 8"),
+        (HEADER + "".join(f"{0.4 * k},3,{k},{100 - k}\n" for k in range(8)), "a decade of times"),
+        (HEADER + "".join(f"{k},3,5,{100 - k}\n" for k in range(20)), "--start unloaded"),
     ],
-    ids=["no time", "not rising", "few"],
+    ids=["no time", "not rising", "a gap", "few", "short", "at rest"],
 )
 def test_what_is_refused(study, tmp_path, text, said):
     file = tmp_path / "loop.csv"

@@ -40,6 +40,7 @@ SOURCE = "<!-- source: some.csv model=solid -->"
         "From 98.7 to 99.1 N. <!-- given: the maker -->",
         "It takes 42 s. <!-- given 42: measured -->",
         "# 99 s in a heading\n\n`99 s` and $99 s$\n\n    99 s\n\n```\n99 s\n```\n",
+        "$$\n99 s\n$$",
         "# a\n<!-- given on this page: measured -->\n\nIt is 99 N.\n\nAnd 98 N.",
         "Of 0.3 MPa at 10 %.",  # the default study's
     ],

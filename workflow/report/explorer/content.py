@@ -18,6 +18,7 @@ from solver.load_path import PathKind
 from solver.models import MODELS
 from solver.record import IN_TIME, SLEEVED, VARIABLES
 from workflow.answers.sheet import sheet
+from workflow.data import deviation
 from workflow.data.principal_stress import principal_of_four
 from workflow.data.records import Curve
 from workflow.data.reference import ForceMap
@@ -287,8 +288,8 @@ def _rows(file: Path, columns: Sequence[str]) -> list[dict[str, Any]]:
 
 def _about(figure: str, scenes: Mapping[str, Sequence[str]]) -> dict[str, list[str]]:
     """The muscles that the figures of a claim show, as ``4, 5`` or ``12``; nothing if not known."""
-    numbers = [f"fig{int(number):02d}" for number in re.findall(r"\d+", figure)]
-    found = [muscle for name in numbers for muscle in scenes.get(name, ())]
+    names = [f"fig{int(number):02d}" for number in re.findall(r"\d+", figure)]
+    found = [muscle for name in names for muscle in scenes.get(name, ())]
     return {"muscles": sorted(set(found))} if found else {}
 
 
@@ -308,7 +309,7 @@ def _deviations(file: Path) -> list[dict[str, Any]]:
     return [
         {names[column]: value for column, value in row.items()}
         for row in rows
-        if row.get("interpolation") == "pchip"
+        if row.get("interpolation") == deviation.RULE
     ]
 
 

@@ -108,8 +108,9 @@ def blocks(text: str) -> Iterator[tuple[int, str]]:
 
     Code, formulas, headings and the targets of links have no numbers of ours; they are blanked.
     """
-    for pattern in (r"^```.*?^```", r"\$\$.*?\$\$", r"^    .*$"):
-        text = re.sub(pattern, _blanked, text, flags=re.S | re.M if pattern[-1] != "$" else re.M)
+    for pattern in (r"^```.*?^```", r"\$\$.*?\$\$"):
+        text = re.sub(pattern, _blanked, text, flags=re.S | re.M)
+    text = re.sub(r"^    .*$", _blanked, text, flags=re.M)
     text = re.sub(r"`[^`\n]*`|\$[^$\n]*\$|\]\([^)\n]*\)|^#.*$", _blanked, text, flags=re.M)
     line, held = 1, ""
     start = 1
