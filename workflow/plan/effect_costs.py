@@ -1,6 +1,6 @@
 """What leaving out an effect changes and saves, as measured: ``effect_costs.csv`` beside this.
 
-Made by ``snakemake --cores 2 effects`` and ``python -m workflow weigh`` from the analysis of
+Made by ``snakemake --cores 2 effects`` and ``muscle weigh`` from the analysis of
 effects; committed, because a plan must not depend on what was solved before. Its first line says
 when and with which code; a test solves some of it again and says if it is out of date.
 """

@@ -1,4 +1,4 @@
-"""What ``python -m workflow explain`` says of every scene: its wishes, what it gets, and why."""
+"""What ``muscle explain`` says of every scene: its wishes, what it gets, and why."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import isfinite, isnan

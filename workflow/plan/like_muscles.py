@@ -4,7 +4,7 @@
 of all kinds, and the dimensionless groups of these (workflow/plan/likeness.py); ``like_states.csv``
 those of the meshes at their states. Both are of the analysis of the ladder:
 
-    snakemake --cores 2 ladder && python -m workflow likeness
+    snakemake --cores 2 ladder && muscle likeness
 
 An error is a power law of the groups, fitted by least squares with a small ridge. How far a muscle
 is from that law is what it was on the muscles of the table, each left out of the fit in its turn

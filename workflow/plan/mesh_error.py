@@ -9,9 +9,9 @@
   value. It serves muscles of these sizes alone, where no muscles of the ladder are like them, and
   the choice of a mesh (workflow/plan/model_choice.py):
 
-    snakemake --cores 2 accuracy && python -m workflow bounds
+    snakemake --cores 2 accuracy && muscle mesh-errors
 
-None of them is a bound.
+All of them are estimates.
 """
 
 import csv
@@ -53,7 +53,7 @@ ERRORS = {"force": "force_error", "inner_diameter_inflated": "diameter_error"}
 
 
 @dataclass(frozen=True)
-class Bound:
+class OfPaper:
     """Largest errors found on a mesh of the muscle of the paper, as shares."""
 
     refinement: int
@@ -165,9 +165,9 @@ def share_of(model: str, effects: Effects, numerics: Numerics, variable: str = "
         return np.nan
     settings, refinement = settings_of(model, effects, numerics)
     finest = None
-    for bound in _bounds().get(settings, ()):
-        if bound.refinement <= refinement:
-            finest = bound
+    for found in _of_paper().get(settings, ()):
+        if found.refinement <= refinement:
+            finest = found
     return finest.errors[variable] if finest else np.nan
 
 
@@ -181,12 +181,12 @@ def settings_of(model: str, effects: Effects, numerics: Numerics) -> tuple[tuple
 
 
 @cache
-def _bounds() -> dict[tuple[str, ...], list[Bound]]:
-    """Bounds by settings, finer meshes last."""
-    found: dict[tuple[str, ...], list[Bound]] = {}
+def _of_paper() -> dict[tuple[str, ...], list[OfPaper]]:
+    """By settings, finer meshes last."""
+    found: dict[tuple[str, ...], list[OfPaper]] = {}
     with FILE.open(newline="", encoding="utf-8") as stream:
         for row in csv.DictReader(line for line in stream if not line.startswith("#")):
             errors = {variable: float(row[column]) for variable, column in ERRORS.items()}
-            bound = Bound(int(row["refinement"]), errors)
-            found.setdefault(tuple(row[name] for name in SETTINGS), []).append(bound)
-    return {key: sorted(each, key=lambda b: b.refinement) for key, each in found.items()}
+            of_mesh = OfPaper(int(row["refinement"]), errors)
+            found.setdefault(tuple(row[name] for name in SETTINGS), []).append(of_mesh)
+    return {key: sorted(each, key=lambda each: each.refinement) for key, each in found.items()}

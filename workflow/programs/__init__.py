@@ -1,4 +1,4 @@
-"""The programs of the workflow, one module each: ``python -m workflow NAME``.
+"""The programs of the workflow, one module each: ``muscle NAME``.
 
 A module has a docstring that says what it does, ``add_arguments(parser)`` and ``run(given)``, which
 returns the exit status. Rules call some of them, people the others; its imports are what a job of

@@ -174,7 +174,7 @@ class Source:
         _, near, nearest = choices(value, others).partition("(nearest: ")
         if near and "(nearest: " not in said:
             return f"{said} or, of the library, {nearest.rstrip(')')}"
-        return f"{said} or one of the library (python -m workflow list)"
+        return f"{said} or one of the library (muscle list)"
 
     def checked(
         self,

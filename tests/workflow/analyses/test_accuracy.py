@@ -48,7 +48,7 @@ def test_values_that_do_not_converge_have_no_order():
         extrapolate((1, 2), [[1.0], [2.0]])
 
 
-def test_grid_convergence_index_bounds_the_error():
+def test_grid_convergence_index_covers_the_error():
     """The example of Roache 1998: second order, ratio 2; and errors that follow the law."""
     assert grid_convergence_index(0.97050, 0.96854, 2.0, 1.786170) == pytest.approx(0.00100, 1e-2)
     order, ratio = 2.5, 1.5
@@ -106,8 +106,8 @@ def test_discretisation_error_and_order(table, model):
     expected = abs(COEFFICIENT[model]) * rows["refinement"] ** -ORDER[model]
     largest = LARGEST + MODELLING[model]
     np.testing.assert_allclose(rows["force_error [1]"], expected / largest, rtol=0.02, atol=1e-7)
-    bound = rows["force_gci [1]"].iloc[1:]
-    np.testing.assert_allclose(bound, 1.25 * rows["force_error [1]"].iloc[1:], rtol=0.1, atol=1e-7)
+    index = rows["force_gci [1]"].iloc[1:]
+    np.testing.assert_allclose(index, 1.25 * rows["force_error [1]"].iloc[1:], rtol=0.1, atol=1e-7)
 
 
 def test_modelling_error_is_apart(table):

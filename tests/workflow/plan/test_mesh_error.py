@@ -20,7 +20,7 @@ from ..synthetic import converged
 
 STUDY = Path(__file__).parents[3] / "config" / "config.yaml"
 LARGEST = 0.01  # share of the largest value; of the muscle of the paper a quarter of that
-AGAIN = "out of date: run snakemake --cores 2 accuracy, then .venv/bin/python -m workflow bounds"
+AGAIN = "out of date: run snakemake --cores 2 accuracy, then .venv/bin/muscle mesh-errors"
 
 
 @pytest.fixture(scope="module")
@@ -72,8 +72,8 @@ def test_defaults_are_in_the_table(make_case):
     for model in mesh_error.PART:
         case = make_case(model=model)
         settings, refinement = mesh_error.settings_of(model, case.effects, case.numerics)
-        bounds = mesh_error._bounds().get(settings, [])
-        assert refinement in [bound.refinement for bound in bounds], AGAIN
+        found = mesh_error._of_paper().get(settings, [])
+        assert refinement in [each.refinement for each in found], AGAIN
 
 
 @pytest.mark.parametrize(("model", "refinement"), [("membrane", 1), ("solid", 1)])
@@ -149,7 +149,7 @@ def test_what_is_not_known_is_nan(make_case):
     assert np.isnan(mesh_error.error(make_case(model="solid", path=path), states, "volume")).all()
 
 
-def test_a_finer_mesh_is_bounded_by_the_next_coarser(make_case):
+def test_a_finer_mesh_has_the_error_of_the_next_coarser(make_case):
     path = LoadPath(kind="isobaric", held=0.3, stops=(0.0,))
     states, default = solution(force=[800.0]), Numerics()
 

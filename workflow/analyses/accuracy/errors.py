@@ -57,7 +57,7 @@ def extrapolate(refinements: Sequence[float], values: ArrayLike) -> Extrapolatio
 def grid_convergence_index(
     fine: ArrayLike, coarse: ArrayLike, ratio: float, order: float
 ) -> NDArray[np.float64]:
-    """Bound on the error of the finer of two meshes whose sizes have a ratio > 1 (Roache 1998)."""
+    """Error of the finer of two meshes with sizes of a ratio > 1, estimated high (Roache 1998)."""
     difference = np.abs(np.asarray(fine) - np.asarray(coarse))
     return np.asarray(SAFETY * difference / (ratio**order - 1))
 

@@ -19,7 +19,7 @@ from workflow.figures.style import SOFT, SOURCES
 ERROR = "total_error [1]"
 RELATIVE = "festo_musclesim_relative [1]"
 PAPER = 27 * 60.0, 0.099  # s, share: the paper's solve, its deviation from the manufacturer's map
-BOUND = 0.0025  # discretisation error that the default meshes are held to
+WANTED = 0.0025  # discretisation error that the default meshes are held to
 DEFAULT = "1/1"
 MARKERS = {"geometric": "o", "cylinder": "s", "membrane": "^", "solid": "D", "cell": "P"}
 COLOURS = {
@@ -126,7 +126,7 @@ def _error_against(ax: Any, rows: pd.DataFrame, cost: str) -> None:
     ticks = MEMORY_TICKS if cost == MEMORY else TIMES
     ax.set_xticks(list(ticks), list(ticks.values()))
     begin = BESIDE if cost == SOLVE else 0
-    ax.axhline(BOUND, begin, color=SOFT, linewidth=0.8, linestyle=(0, (4, 2)))
+    ax.axhline(WANTED, begin, color=SOFT, linewidth=0.8, linestyle=(0, (4, 2)))
 
 
 def _ring() -> dict[str, Any]:
@@ -165,7 +165,7 @@ def _label_seconds(ax: Any, rows: pd.DataFrame) -> None:
     ax.legend(loc="lower left", fontsize=7.5, handlelength=1.8)
     ax.set_xlim(2e-5, 4 * PAPER[0])
     right = {"transform": ax.get_yaxis_transform(), "ha": "right", "fontsize": 7}
-    ax.text(0.99, BOUND, "a quarter of a per cent", color=SOFT, va="bottom", **right)
+    ax.text(0.99, WANTED, "a quarter of a per cent", color=SOFT, va="bottom", **right)
 
 
 def _maps(ax: Any, rows: pd.DataFrame) -> None:
@@ -314,7 +314,7 @@ def _by_refinement(ax: Any, table: pd.DataFrame) -> None:
             fontsize=7.5,
             va="center",
         )
-    ax.axhline(100 * BOUND, color=SOFT, linewidth=0.8, linestyle=(0, (4, 2)))
+    ax.axhline(100 * WANTED, color=SOFT, linewidth=0.8, linestyle=(0, (4, 2)))
     ax.set(xscale="log", yscale="log", xlabel="elements of the default mesh cut into")
     ax.set_xticks([1, 2, 3, 4, 6, 8])
     ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

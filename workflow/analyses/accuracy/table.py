@@ -4,7 +4,7 @@ Columns, where they say something of a row:
 
 states, tolerance   of the curve and of Newton's method
 force_error         discretisation: largest |F - F*| over the curve's largest force, F* extrapolated
-force_order, force_gci, diameter_..., threshold_...   observed order; bound by the next coarser mesh
+force_order, force_gci, diameter_..., threshold_...   observed order; by the next coarser mesh
 total_error         largest |F - F**|, F** of the fullest model: discretisation and modelling
 modelling_error     the same with F* in place of F
 <map>_relative, <map>_share   mean deviation from a reference map (workflow/data/deviation.py)
@@ -145,8 +145,8 @@ def _one_limit(
     for k, at in enumerate(family.index[1:], 1):
         ratio = refinements[k] / refinements[k - 1]
         pair = values[own[k]], values[own[k - 1]]
-        bound = grid_convergence_index(*pair, ratio, limit.order)
-        table.loc[at, f"{quantity}_gci [1]"] = share(bound, limit.limit)
+        index = grid_convergence_index(*pair, ratio, limit.order)
+        table.loc[at, f"{quantity}_gci [1]"] = share(index, limit.limit)
 
 
 def _against_strictest(table: pd.DataFrame) -> None:
