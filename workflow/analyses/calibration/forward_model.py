@@ -24,8 +24,8 @@ from workflow.data.records import SolvedCase
 from workflow.data.states import GOOD, state_rows
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
+from workflow.study.muscles import CAP_PER_WALL
 from workflow.study.schema import SHAPES
-from workflow.study.study import CAP_PER_WALL
 
 # A calibration may name any model, so all of them are sources.
 DATA = ("geometry/*.py", "solver/**/*.py", "solver/**/*.[ei]dp")

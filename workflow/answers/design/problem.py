@@ -27,8 +27,8 @@ from workflow.plan.sheet_stops import stops_to
 from workflow.study import fit
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError
+from workflow.study.muscles import CAP_PER_WALL
 from workflow.study.schema import DesignEntry, RequirementEntry
-from workflow.study.study import CAP_PER_WALL
 
 NUMBERS = ("inner_diameter", "wall_thickness", "length", "angle")
 DECIMALS = 3  # of lengths and angles of a muscle that is solved: what is pasted is what was solved
