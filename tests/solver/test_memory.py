@@ -62,7 +62,7 @@ def uniaxial(memory, nbr, strains, step):
         over_a, over_b = wall.slopes(a, b)
         along = (by_b + over_b) - (by_a + over_a) * a / (2 * b)  # dA = -A/(2B) dB
         stresses.append(2 * float(along[0]) * math.sqrt(b[0]))
-        wall.advance(principal(a, b), step)
+        wall.advance(principal(a, b))
     return np.array(stresses)
 
 
@@ -95,7 +95,7 @@ def test_a_held_strain_relaxes_exactly_whatever_the_steps(make_case):
         for step in steps:
             cylinder.memory.freeze(step)
             now = cylinder._forces(14, 0.9, 0.0, threads=False)
-            cylinder.memory.advance(held, step)
+            cylinder.memory.advance(held)
         assert now[0] / long_term[0] == pytest.approx(1.1089401320, abs=1e-10)
         assert now[1] / long_term[1] == pytest.approx(1.1089401320, abs=1e-10)
 
@@ -107,7 +107,8 @@ def test_stored_energy_and_dissipation_of_a_wall_at_rest_are_none(nbr):
     assert wall.stored == pytest.approx(0, abs=1e-15)
     assert wall.dissipation == pytest.approx(0, abs=1e-15)
     assert np.max(np.abs(wall.slopes(c[0], c[1]))) < 1e-15
-    wall.advance(principal(np.array([1.0, 1.0]), 1.0), 0.1)
+    wall.freeze(0.1)
+    wall.advance(principal(np.array([1.0, 1.0]), 1.0))
     assert wall.stored > 0
     assert wall.dissipation > 0
 
@@ -133,7 +134,7 @@ def test_constants_of_a_test_that_took_a_minute(nbr):
     memory = Memory.flat(0.06, 1e-3, 1e3, reference_time=60)
     wall = WallMemory(memory, nbr.branch, np.ones(1))
     wall.freeze(0.0)
-    wall.advance(principal(np.array([1.5]), 0.9), 0.0)
+    wall.advance(principal(np.array([1.5]), 0.9))
     wall.freeze(60.0)
     over = wall.slopes(np.array([1.5]), 0.9)[0]
     law = nbr.slopes(np.array([1.5]), 0.9, np.zeros(1))[0]

@@ -91,11 +91,11 @@ class _Run:
             memory, self.cylinder.memory = self.memory, None  # long-term on the whole way
             reason = self._walk(path.ways(rubber=wall))
             self.cylinder.memory = memory
-            memory.rest(self._stretch())
+            memory.rest(self._stretch(self.cylinder.state(self.at)))
         else:
             reason = self._walk(path.ways(rubber=wall))
             if self.memory is not None and not reason:
-                self.memory.advance(self._stretch(), 0.0)
+                self.memory.advance(self._stretch(self.cylinder.state(self.at)))
         if reason:
             return reason
         self.state = state = self.cylinder.state(self.at)
@@ -235,7 +235,7 @@ class _Run:
             self.length.end(self._length(new), length)
             self.gas.end(self._content(new), length)
         if self.memory is not None:
-            self.memory.advance(self._stretch(), length)
+            self.memory.advance(self._stretch(new))
         friction = self.cylinder.friction
         if friction is not None:
             friction.advance(*self.cylinder.pressing(new))
@@ -267,9 +267,8 @@ class _Run:
         held = self.history.held
         return self.case.path.held if held is None else held[stop]
 
-    def _stretch(self) -> Array:
+    def _stretch(self, state: State) -> Array:
         """C at the points of the wall."""
-        state = self.cylinder.state(self.at)
         return principal(self.cylinder.hoop(state.r, state.lz) ** 2, state.lz**2)
 
     def _length(self, state: State) -> float:

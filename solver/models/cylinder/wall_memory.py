@@ -39,6 +39,7 @@ class WallMemory:
         shares = memory.of_law()[:, None, None]
         self.c10, self.c01 = shares * constants[0], shares * constants[1]
         self.measure = measure
+        self.step = -1.0  # length of the last one [s], of which the weights are
         self.rest(np.ones((3, len(measure))))
 
     def rest(self, c: Array) -> None:
@@ -49,9 +50,12 @@ class WallMemory:
 
     def freeze(self, step: float) -> None:
         """Begin a step of some length [s] from what is remembered."""
-        e, w0, _ = weights(step / self.times)
-        self.f = np.sum(self.c10 * (e * self.u + w0 / self.c), axis=0)
-        self.g = np.sum(self.c01 * (e * self.v + w0 * self.c), axis=0)
+        if step != self.step:
+            self.step, self.weights = step, weights(step / self.times)
+        e, w0, _ = self.weights
+        self.old = e * self.u + w0 / self.c, e * self.v + w0 * self.c  # all but what the end adds
+        self.f = np.sum(self.c10 * self.old[0], axis=0)
+        self.g = np.sum(self.c01 * self.old[1], axis=0)
 
     def slopes(self, a: Array, b: Array | float) -> tuple[Array, Array]:
         """What the energy of the step adds to the derivatives of the law's, by A and B [MPa]."""
@@ -67,11 +71,10 @@ class WallMemory:
         by_bb = 2 * (f[2] / (a * b**3) + g[1] / b**3)
         return by_aa, f[2] / (a * b) ** 2 + g[2], by_bb
 
-    def advance(self, c: Array, step: float) -> None:
-        """End the step at C."""
-        e, w0, w1 = weights(step / self.times)
-        self.u = e * self.u + w0 / self.c + w1 / c
-        self.v = e * self.v + w0 * self.c + w1 * c
+    def advance(self, c: Array) -> None:
+        """End the step that was begun, at C."""
+        w1 = self.weights[2]
+        self.u, self.v = self.old[0] + w1 / c, self.old[1] + w1 * c
         self.c = c
 
     @property
