@@ -6,7 +6,7 @@ import pytest
 from geometry.mesh_settings import SectionMesh
 from solver import balance, record
 from solver.effects import Effects
-from solver.history import History, Start, Valve, Wave, sampled
+from solver.history import History, Start, Valve, Wave, sampled, through
 from solver.load_path import LoadPath
 from solver.memory import Memory
 from solver.numerics import Numerics
@@ -15,6 +15,7 @@ from solver.rubber.yeoh.law import Yeoh
 
 FLAT = Memory.flat(0.06, 1e-3, 1e3)
 LONG = Numerics(section=SectionMesh(cap_step=10, body_step=20, growth=2))  # nothing changes along Z
+COARSE = Numerics(section=SectionMesh(cap_step=2, body_step=10, growth=2))
 TUBE = {"effects": Effects(end="sliding", volume="incompressible"), "numerics": LONG}
 
 
@@ -78,6 +79,26 @@ def test_energy_is_balanced_to_second_order(make_case, solve_case):
     assert left[0] / left[1] == pytest.approx(4, rel=0.2)
     membrane = solve_case(make_case(**(cycles(40) | {"model": "membrane"}))).states
     assert width(solution.states, 40) / width(membrane, 40) == pytest.approx(1.0116, abs=1e-3)
+
+
+def test_a_history_agrees_with_an_eighth_of_the_step(make_case, solve_case):
+    """No wave, of several amplitudes, and held for a while; on a coarse mesh."""
+    rows = ((0, 0.02), (0.4, 0.15), (1.2, 0.15), (2.0, 0.05), (2.8, 0.12), (4, 0.02))
+    memory = Memory(shares=(0.1, 0.1, 0.2), times=(0.3, 3.0, 30.0))
+
+    def force(steps):
+        times = tuple(4.0 * k / steps for k in range(steps + 1))
+        stops = through(rows, times)
+        path = LoadPath(kind="isobaric", held=0.3, stops=stops, history=History(times=times))
+        case = make_case(model="solid", path=path, memory=memory, numerics=COARSE)
+        states = solve_case(case).states
+        assert np.all(np.diff(states["dissipated"]) >= 0)
+        return states["force"][:: steps // 10]
+
+    coarse, middle, fine = force(20), force(40), force(160)
+    first, second = (np.max(np.abs(values - fine)) for values in (coarse, middle))
+    assert second < 2e-4 * np.max(np.abs(fine))
+    assert first / second == pytest.approx(4, rel=0.25)
 
 
 def test_a_law_of_which_the_branches_are_neo_hookean(make_case, solve_case):

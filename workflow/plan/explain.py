@@ -33,6 +33,7 @@ def lines(plan: Plan, outcome: Outcomes = lambda _: None) -> Iterator[str]:
         yield f"  wants    {_wish(scene, choice)}"
         if scene.in_time:
             yield from _memories(plan, scene)
+            yield from _not_known_in_time(scene)
         climbs = {key: plan.cases[key] for key in places.values() if key in plan.promises}
         if climbs:
             for key, climbed in climbs.items():
@@ -103,6 +104,19 @@ def _memories(plan: Plan, scene: Scene) -> Iterator[str]:
             )
 
 
+def _not_known_in_time(scene: Scene) -> Iterator[str]:
+    """What nothing is promised of."""
+    yield (
+        "  in time  nothing is promised: how far models and meshes are off in widths of loops, "
+        "rates and damping was not measured"
+    )
+    more = "samples" if scene.cycle is not None else "steps"
+    yield (
+        f"{'':11}a curve whose steps are too long for its energies to balance is unbalanced; how "
+        f"far its numbers change with more {more} only more {more} say"
+    )
+
+
 def _models(scene: Scene, choice: Choice, estimates: Sequence[Estimate]) -> Iterator[str]:
     """The ladder with expected errors and costs; what was taken is marked."""
     chosen = choice.chosen.rung.name if choice.chosen else None
@@ -111,6 +125,8 @@ def _models(scene: Scene, choice: Choice, estimates: Sequence[Estimate]) -> Iter
         how = "the best there is"
     if {"stress", "deformed_shape"} & set(scene.quantities):
         how += "; errors are those of the force, fields are not measured"
+    if scene.in_time:
+        how += "; errors and seconds are those of the curve at rest"
     yield f"  models   {how}"
     for estimate in estimates:
         rung = estimate.rung

@@ -237,6 +237,8 @@ def test_explain_says_how_and_what_is_remembered(solved):
     assert "contraction 0 to 0.2 and back (triangle), 1 cycles of 4, 40 s in 8 steps" in text
     assert "one: 4 branches of 0.01 to 10 s, 24 % of the long-term stiffness" in text
     assert "of the supply through a valve, 0.01 s in steps of 0.002 s, mass 5 kg" in text
+    assert text.count("nothing is promised") == 3
+    assert text.count("errors and seconds are those of the curve at rest") == 3
 
 
 CYCLE = "cycle: {held: pressure, period: [4, 40], cycles: 1, samples: 8}\n"
