@@ -138,12 +138,12 @@ def time(table):
     return [
         "pressure 0.5 MPa",
         "1 %/s",
-        "same tube, sleeve, contacts 0.2 mm",
+        "sleeve, contacts 0.2 mm (guess)",
         "measured, another muscle",
         "three elements",
         "0.01 Hz",
         "with memory",
-        "No picture of: both ways",
+        "No picture of: membrane, solid",
     ]
 
 

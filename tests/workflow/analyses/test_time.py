@@ -55,13 +55,13 @@ def test_the_sleeve_has_the_threads_of_the_muscle(study):
 def test_tables(study):
     tables = table.tables(study, [made_up(one) for one in cases.cases(study)])
     rows = tables["time"]
-    loops = rows[rows["set"].isin(["rate", "pressure", "sleeve"])]
+    loops = rows[rows["set"].isin(["rate", "pressure", "wall", "sleeve"])]
     assert loops["width"].to_list() == pytest.approx([8.0] * len(loops), abs=0.5)
     by_rate = rows[rows["set"] == "rate"]["three elements, width [N]"].to_numpy()
     np.testing.assert_allclose(by_rate[1:] / by_rate[:-1], 10)  # a damper
     assert set(tables["time_curves"]["set"]) == {
         *("rate", "pressure", "frequency", "step"),
-        "sleeve",
+        *("wall", "sleeve"),
     }
     assert len(tables["time_vibrations"]) == 3 * len(cases.VIBRATIONS)
 

@@ -3,7 +3,8 @@
 The rubber has an assumed memory, equal relaxation in every decade from 1 ms to 1000 s, by 6 % of
 the long-term stiffness each: no relaxation test of the rubber of a muscle is known with numbers.
 Loops are the third of three, from rest at their first state. Beside it stands the same muscle with
-its threads in a sleeve, whose rubber has no memory and whose crossings rub.
+its threads in a sleeve, whose rubber has no memory and whose crossings rub. The loop that the
+solid goes through too shows what the wall is and bears at one contraction on both ways.
 """
 
 from collections.abc import Iterator
@@ -38,7 +39,7 @@ VIBRATIONS = tuple(float(f"{10 ** (k / 4):.4g}") for k in range(-8, 9))  # Hz
 
 def cases(study: Study) -> list[AnalysisCase]:
     """Loops of force by rate and pressure, of contraction by frequency; a step; vibrations."""
-    return [*_loops(study), *_sleeves(study), *_steps(study), *_vibrations(study)]
+    return [*_loops(study), _wall(study), *_sleeves(study), *_steps(study), *_vibrations(study)]
 
 
 def _case(study: Study, model: str, path: LoadPath, *, memory: bool = True, **more: Any) -> Case:
@@ -66,6 +67,14 @@ def _loops(study: Study) -> Iterator[AnalysisCase]:
         path = cycle(PathKind.ISOTONIC, LOAD, HIGHEST, 1 / frequency)
         tags = {"set": "frequency", "pressure": PRESSURE, "frequency": frequency}
         yield AnalysisCase(_case(study, "membrane", path), f"{frequency:g} Hz", tags)
+
+
+def _wall(study: Study) -> AnalysisCase:
+    """The loop at the middle rate, with the fields of the wall."""
+    path = cycle(PathKind.ISOBARIC, PRESSURE, FURTHEST, 2 * FURTHEST / RATES[1])
+    tags: dict[str, str | float] = {"set": "wall", "pressure": PRESSURE, "rate": RATES[1]}
+    case = _case(study, "solid", path, fields_at=(AT,))
+    return AnalysisCase(case, f"solid, {100 * RATES[1]:g} %/s", tags)
 
 
 def sleeved(muscle: Muscle) -> Muscle:

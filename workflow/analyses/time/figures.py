@@ -1,4 +1,4 @@
-"""Figures of time: loops and their width; rates, a step and vibrations; the shape on both ways."""
+"""Figures of time: loops and their width; rates, a step and vibrations; the wall on both ways."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,11 +10,17 @@ from workflow.analyses import undrawn
 from workflow.analyses.analysis import Solved
 from workflow.analyses.time.cases import AT, CONTACTS, FREQUENCIES, RATES
 from workflow.analyses.time.table import widths
+from workflow.data import stress
+from workflow.data.stress import LARGEST
 from workflow.figures import curves, style
 
 GAP = (0.66, 0.66)
 LINES = ("-", (0, (5, 2)), (0, (1, 1)))  # of rates, which lie on each other
 ELEMENTS = {"color": "0.45", "linestyle": (0, (4, 2)), "linewidth": 1.1}
+SURFACES: dict[str, dict[str, Any]] = {
+    "inner surface": {"color": "black"},
+    "outer surface": {"color": "#0072b2"},
+}
 MEASURED = 12.7  # N, half width of a 10 mm muscle (Hunt 2017), 15.6 kPa
 FAR = 20.0  # N: widths of the three elements beyond it are said, not drawn
 CONTRACTION, PRESSURE, FORCE = "contraction [1]", "pressure [MPa]", "force [N]"
@@ -40,11 +46,11 @@ def loops(table: pd.DataFrame, found: pd.DataFrame) -> Figure:
         if rate == RATES[1]:
             whole.plot(curve[CONTRACTION], curve[FORCE], color=look["color"])
         along.plot(*widths(curve), label=label, **look)
-        row = table[(table["set"] == "rate") & (table["label"] == label)]
-        for value in row["three elements, width [N]"].dropna():
-            if value < FAR:
-                along.plot([0, 0.2], [value] * 2, label="three elements", **ELEMENTS)
-                along.text(0.2, value, label, ha="right", va="bottom", fontsize=7, color="0.45")
+    elements = table.loc[table["set"] == "rate", ["label", "three elements, width [N]"]].dropna()
+    for label, value in elements.itertuples(index=False):
+        if value < FAR:
+            along.plot([0, 0.2], [value] * 2, label="three elements", **ELEMENTS)
+            along.text(0.2, value, label, ha="right", va="bottom", fontsize=7, color="0.45")
     whole.set_title(f"third loop, {100 * RATES[1]:g} %/s, 0.3 MPa")
     whole.set(ylabel="force [N]")
     along.set_title("its width")
@@ -53,18 +59,18 @@ def loops(table: pd.DataFrame, found: pd.DataFrame) -> Figure:
         ax.set_xlabel("contraction [%]")
         style.percent(ax.xaxis)
     rows = table[table["set"] == "pressure"].sort_values(PRESSURE)
-    width.plot(rows[PRESSURE], rows["width"], label="rubber", color="black", marker="o")
+    width.plot(rows[PRESSURE], rows["width"], label="rubber (assumed)", color="black", marker="o")
     for k, contact in enumerate(CONTACTS):
         own = (table["set"] == "sleeve") & (table["contact [mm]"] == contact)
         rubs = table[own].sort_values(PRESSURE)
         look = style.series(3) | {"linestyle": ("-", (0, (1, 1)))[k], "marker": ""}
-        label = f"same tube, sleeve, contacts {contact:g} mm"
+        label = f"sleeve, contacts {contact:g} mm (guess)"
         width.plot(rubs[PRESSURE], rubs["width"], label=label, **look)
     width.axhline(2 * MEASURED, color="#d55e00", linewidth=1, label="measured, another muscle")
     width.set(xlabel="pressure [MPa]", ylabel="width of the loop [N]")
     width.set_title(f"width at {100 * AT:g} %")
     style.legend(figure, style.labelled(axes[:, :2]), style.labelled(axes[:, 2:]))
-    drawn = table[table["set"].isin(["rate", "pressure", "sleeve"])]
+    drawn = table[table["set"].isin(["rate", "pressure", "wall", "sleeve"])]
     far = drawn["three elements, width [N]"] >= FAR
     beyond = sorted(set(drawn.loc[far & (drawn["set"] == "rate"), "label"]))
     cut = f"Three elements, fitted at {100 * RATES[1]:g} %/s, are beyond {FAR:g} N at "
@@ -107,7 +113,7 @@ def response(found: pd.DataFrame, answers: pd.DataFrame) -> Figure:
     stiffness.set_title("storage stiffness at 10 %")
     loss.set(xscale="log", xlabel="frequency [Hz]", ylabel="K''/K'")
     loss.set_title("loss factor at 10 %")
-    style.legend(figure, style.labelled(axes))
+    style.legend(figure, style.labelled(axes[:1]), style.labelled(axes[1:]))
     names = undrawn.without_value(found, CONTRACTION, ["set", "label"])
     text = undrawn.sentence(name for name in names if not name.startswith("rate"))
     if text:
@@ -116,20 +122,45 @@ def response(found: pd.DataFrame, answers: pd.DataFrame) -> Figure:
 
 
 def shape(solved: Sequence[Solved]) -> Figure:
-    """The inner radius at equal contraction, lengthening less shortening, along the muscle."""
-    figure, axes = style.panels(style.COLUMN_WIDTH, 2.6)
-    ax, drawn = axes[0, 0], False
+    """Radius and stress at equal contraction, lengthening less shortening, along the muscle."""
+    figure, axes = style.panels(style.FULL, 2.6, 1, 2, gap=GAP)
+    radius, bears = axes[0]
+    missing = []
+    membrane = _both_ways(solved, "rate", "meridian")
+    if membrane:
+        there, back = membrane
+        look = {"color": "0.45", "linestyle": (0, (4, 2)), "label": "membrane"}
+        radius.plot(there[:, 3], 1000 * (back[:, 2] - there[:, 2]), **look)
+    else:
+        missing.append("membrane")
+    solid = _both_ways(solved, "wall", "corners", "stress")
+    if solid:
+        there, back = (stress.along_meridian(corners) for corners in solid)
+        for where, look in SURFACES.items():
+            own = there["where"] == where
+            along = there.loc[own, "z [mm]"]
+            wider, more = (back.loc[own, x] - there.loc[own, x] for x in ("r [mm]", LARGEST))
+            radius.plot(along, 1000 * wider, label=f"solid, {where}", **look)
+            bears.plot(along, 1000 * more, **look)
+    else:
+        missing.append("solid")
+    for ax, said in ((radius, "difference of radius [µm]"), (bears, "difference [kPa]")):
+        ax.axhline(0, color=style.SOFT, linewidth=0.8)
+        ax.set(xlabel="distance from mid-length [mm]", ylabel=said)
+    radius.set_title("radius")
+    bears.set_title("largest principal stress")
+    style.legend(figure, style.labelled(axes))
+    text = f"Lengthening less shortening, both at {100 * AT:g} %, third loop, 10 %/s, 0.3 MPa."
+    curves.note(figure, " ".join(filter(None, [text, undrawn.sentence(missing, "No picture of")])))
+    return figure
+
+
+def _both_ways(solved: Sequence[Solved], of: str, *names: str) -> list[Any]:
+    """The last two fields of the loop of a set, on the way there and back; empty without."""
     for one in solved:
         fields = one.solution.fields
-        last = [k for k in sorted(fields) if "meridian" in fields[k]][-2:]
-        if one.asked.tags["set"] != "rate" or len(last) < 2:
-            continue
-        there, back = (fields[k]["meridian"] for k in last)
-        ax.plot(there[:, 3], 1000 * (back[:, 2] - there[:, 2]), color="black")
-        drawn = True
-    ax.axhline(0, color=style.SOFT, linewidth=0.8)
-    ax.set(xlabel="distance from mid-length [mm]", ylabel="difference of radius [µm]")
-    ax.set_title(f"lengthening less shortening, both at {100 * AT:g} %")
-    if not drawn:
-        curves.note(figure, "No picture of: both ways.")
-    return figure
+        last = [k for k in sorted(fields) if set(names) <= set(fields[k])][-2:]
+        if one.asked.tags["set"] == of and len(last) == 2:
+            ways = [fields[k] for k in last]
+            return [stress.wall(way) if "corners" in names else way[names[0]] for way in ways]
+    return []

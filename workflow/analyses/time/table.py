@@ -77,7 +77,7 @@ def _row(study: Study, one: Solved, elements: ThreeElements) -> dict[str, Any]:
     row |= {"mean": np.nan, "dissipated [N mm]": np.nan, "unbalanced [1]": np.nan}
     row |= {"contact [mm]": tags.get("contact", np.nan), "three elements, width [N]": np.nan}
     row |= {"status": one.solution.status.value}
-    if tags["set"] in ("rate", "pressure", "sleeve"):
+    if tags["set"] in ("rate", "pressure", "wall", "sleeve"):
         there, back = branches(one, "force", "contraction", AT)
         row |= {"width": back - there, "mean": (there + back) / 2, "unit": "N"}
     if tags["set"] in ("rate", "pressure"):
