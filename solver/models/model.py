@@ -31,15 +31,6 @@ def _many(braid: AnyBraid) -> str:
     return ""
 
 
-def _crimped(braid: AnyBraid) -> str:
-    if isinstance(braid, LayeredBraid) and braid.crimp_radii:
-        return (
-            "membrane, or cylinder, which has no ends: only the membrane has a sleeve that hangs "
-            "free between a wider collar and the tube"
-        )
-    return ""
-
-
 def _many_angles(braid: AnyBraid) -> str:
     if isinstance(braid, LayeredBraid) and not braid.has_one_angle:
         return "cylinder: Eq. (1) has one braid angle, and the layers have several"
@@ -59,7 +50,7 @@ def _many_leads(braid: AnyBraid) -> str:
 BRAIDS: dict[str, Callable[[AnyBraid], str]] = {
     "any": lambda _: "",
     "mirrored": _twists,
-    "mirrored, two lines": lambda braid: _twists(braid) or _many(braid) or _crimped(braid),
+    "mirrored, two lines": lambda braid: _twists(braid) or _many(braid),
     "one angle": lambda braid: _many_angles(braid) or _twists(braid),
     "one lead": _many_leads,
 }
