@@ -3,8 +3,9 @@
 Pressure and contraction are prescribed as they were measured. Of the forces that a model then has
 a flat spectrum, equal relaxation in every decade, is chosen by least squares. It reaches from
 the shortest step of the file to its duration, as no test says anything of times beyond. A model is
-off in its elastic force too, by more than a loop is wide: so a line by what varies (contraction,
-pressure) is fitted beside it, and what is left says how wide the loop is and how it relaxes.
+off in its elastic force too, by more than a loop is wide: so a curve by what varies (contraction,
+pressure), the same on both ways, is fitted beside it, and what is left says how wide the loop is
+and how it relaxes.
 """
 
 from collections.abc import Iterator
@@ -34,6 +35,7 @@ FEWEST = 8
 SHARES = (1e-4, 1.0)  # relaxation by decade, between which it is looked for
 FIRST, STEP = 0.05, 1e-2  # where it begins; of a derivative, as a share
 VARIES = {"contraction": 1e-3, "pressure": 1e-3}  # 1, MPa
+DEGREE, LEVELS = 3, 8  # of the curve beside a model, where there are so many different values
 CONFIDENCE = 0.95
 NOTHING = 1e-6  # of the forces, what the solver leaves open
 
@@ -45,8 +47,8 @@ class MemoryFit:
     Attributes
     ----------
     times, pressure, contraction, measured : of the rows that are used [s, MPa, 1, N]
-    fitted : force with the memory, and the line [N]
-    line : by its names, constant and slopes of what the elastic force is off [N, N, N/MPa]
+    fitted : force with the memory, and the curve [N]
+    curve : constant and coefficients of what the elastic force is off, by contraction and MPa [N]
     per_decade, interval : share of the long-term stiffness, and half its interval of 95 %
     memory : as it goes into a study file
     said : how the file was read
@@ -58,7 +60,7 @@ class MemoryFit:
     contraction: Array
     measured: Array
     fitted: Array
-    line: dict[str, float]
+    curve: dict[str, float]
     per_decade: float
     interval: float
     memory: Memory
@@ -129,7 +131,7 @@ def fit(
         contraction=contraction,
         measured=measured,
         fitted=measured + left,
-        line=dict(zip(trial.names, map(float, values), strict=True)),
+        curve=dict(zip(trial.names, map(float, values), strict=True)),
         per_decade=share,
         interval=interval,
         memory=memory,
@@ -181,8 +183,12 @@ class _Trial:
             raise StudyError(f"{model} cannot follow the file: {error}") from None
         varying = {"contraction": contraction, "pressure": pressure}
         kept = {name: v for name, v in varying.items() if np.ptp(v) > VARIES[name]}
-        self.names = ["constant", *kept]
-        self.columns = np.column_stack([np.ones(len(times)), *kept.values()])
+        columns = {"constant": np.ones(len(times))}
+        for name, values in kept.items():
+            levels = len(np.unique(np.round(values / VARIES[name])))
+            for power in range(1, 1 + (DEGREE if levels >= LEVELS else 1)):
+                columns[name if power == 1 else f"{name}^{power}"] = values**power
+        self.names, self.columns = list(columns), np.column_stack(list(columns.values()))
         self._known: dict[float, Array] = {}
 
     def memory(self, share: float) -> Memory:
@@ -207,7 +213,7 @@ class _Trial:
         return self._known[share]
 
     def left(self, share: float, measured: Array) -> Array:
-        """What is left of the forces beside the best line [N]."""
+        """What is left of the forces beside the best curve [N]."""
         off = self.force(share) - measured
         return np.asarray(off - self.columns @ np.linalg.lstsq(self.columns, off, rcond=None)[0])
 

@@ -29,7 +29,7 @@ def draw(
     if x is not times:
         mean = np.polynomial.Polynomial.fit(x, measured, min(DEGREE, len(np.unique(x)) - 1))(x)
     force.plot(x, measured - mean, label="measured", **points)
-    force.plot(x, fitted - mean, color="black", label="model with memory, and a line")
+    force.plot(x, fitted - mean, color="black", label="model with memory, and a curve")
     force.set(xlabel=name, ylabel="force [N]" if x is times else "force less its mean curve [N]")
     force.set_title(title)
     left.plot(times, measured - fitted, **points)

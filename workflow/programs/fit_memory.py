@@ -67,8 +67,8 @@ def lines(found: "MemoryFit", model: str, material: str) -> Iterator[str]:
         f"left in the mean square: {found.residual:.3g} N, "
         f"{100 * found.residual / span if span else 0:.2g} % of the range of the forces"
     )
-    shown = ", ".join(f"{name} {value:.4g}" for name, value in found.line.items())
-    yield f"taken off as elastic (N; N per contraction; N/MPa): {shown}"
+    shown = ", ".join(f"{name} {value:.4g}" for name, value in found.curve.items())
+    yield f"taken off as elastic (N, by contraction and MPa): {shown}"
     for note in found.notes:
         yield f"warning: {note}"
     yield "to paste into a study file:"

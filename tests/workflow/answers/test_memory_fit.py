@@ -28,7 +28,8 @@ def rows_of(study, solve_case, times, stops, share, to):
     memory = Memory.flat(share, 0.1, to)
     states = solve_case(study.muscles["dmsp20"].case(path, "cylinder", memory=memory)).states
     noise = 0.3 * np.random.default_rng(4).normal(size=len(times))
-    force = (states["force"] + noise + 15 - 80 * np.array(stops)).tolist()
+    e = np.array(stops)
+    force = (states["force"] + noise + 15 - 80 * e + 600 * e**2).tolist()
     rows = zip(times, stops, force, strict=True)
     return "\n".join(f"{t!r},3,{100 * e:.8g},{f!r}" for t, e, f in rows)
 
