@@ -34,7 +34,7 @@ CURVES = Path(__file__).with_suffix(".csv")
 STATES = CURVES.with_name("like_states.csv")
 DATA = ("workflow/plan/like_muscles.csv", "workflow/plan/like_states.csv")
 COVERAGE = 0.95  # share of like muscles, or of their states, that have at most what is said
-OF_STATES = 0.85  # the same of states, before the largest is raised to that of the curve
+OF_STATES = 0.93  # of states, before the largest is raised to that of the curve
 RIDGE = 0.1  # of features whose spread is 1: as a tenth of a muscle that says nothing
 MOST = 50.0  # of a logarithm: far from the middle of the table a spread says nothing
 LEAST = 1e-7  # share: of smaller errors no law is fitted
@@ -147,7 +147,7 @@ def _guess(case: Case, rung: str, quantity: str) -> Guess | None:
     if np.isnan(value[0]):
         return None
     median = exp(min(value[0] + wider[0] * law.quantile(0.5), MOST))
-    near = _nearest(case, table)
+    near = _nearest(case, rung)
     return Guess(
         median=median,
         high=exp(min(value[0] + wider[0] * law.quantile(COVERAGE), MOST)),
@@ -258,15 +258,17 @@ def _features(groups: Mapping[str, float], kind: str) -> Array:
     isometric, isotonic = float(kind == "isometric"), float(kind == "isotonic")
     free = 1 - 1 / (sqrt(3) * cos(radians(groups["angle"])))  # contraction of a thin net
     rubber = groups["wall"] * groups["furthest"] / groups["lowest"]  # of its force, by the net's
-    more = [groups["furthest"] / free, rubber, isometric * rubber, groups["angle"] ** 2]
-    return np.array([*found, isometric, isotonic, *more, isotonic * groups["load"] ** 2])
+    more = [groups["furthest"] / free, rubber, groups["angle"] ** 2, isotonic * groups["load"] ** 2]
+    own = [isometric * value for value in (*found, rubber)]  # pushed at low pressures: other slopes
+    return np.array([*found, isometric, isotonic, *more, *own])
 
 
 def _state_features(row: Mapping[str, float], kind: str) -> Array:
     own = [row[name] for name in OF_STATE]
     ratio = row["at"] / row["pressure"]
-    more = [row["pull"] ** 2, row["contraction"] ** 2, ratio, row["contraction"] * row["angle"]]
-    return np.concatenate([_features(row, kind), own, more])
+    own += [row["pull"] ** 2, row["contraction"] ** 2, ratio, row["contraction"] * row["angle"]]
+    isometric = [float(kind == "isometric") * value for value in own]
+    return np.concatenate([_features(row, kind), own, isometric])
 
 
 def _leverage(x: Array, inverse: Array) -> Array:
@@ -278,15 +280,23 @@ def _with_one(features: Array) -> Array:
     return np.column_stack([np.ones(len(features)), features])
 
 
-def _nearest(case: Case, table: list[dict[str, str]], count: int = 12) -> list[int]:
+def _nearest(case: Case, rung: str, count: int = 12) -> list[int]:
     """The muscles of the table that are most like one, on the same kind of path."""
     kind = str(case.path.kind)
     own = _features(likeness.groups(case), kind)
-    rows = np.array([_features(_numbers(row), row["path"]) for row in table])
+    rows, kinds = _rows(rung)
     spread = np.where(rows.std(0) > 0, rows.std(0), 1.0)
     away = (((rows - own) / spread) ** 2).sum(1)
-    away += np.where([row["path"] == kind for row in table], 0, 1e6)
+    away += np.where(kinds == kind, 0, 1e6)
     return [int(k) for k in np.argsort(away)[:count]]
+
+
+@cache
+def _rows(rung: str) -> tuple[Array, NDArray[np.str_]]:
+    """Features of all muscles of the table, and their kinds of path."""
+    table = _curves()[rung]
+    kinds = np.array([row["path"] for row in table])
+    return np.array([_features(_numbers(row), row["path"]) for row in table]), kinds
 
 
 @cache

@@ -8,15 +8,18 @@ proved exact enough
   and what the better one may itself be off are within the tolerance,
 - or, of a mesh, by a coarser one on this curve.
 
-Where neither is so it climbs. Pure but for the two functions that it is given: what a rung gives is
-asked of ``solve``, what is there already of ``known``.
+Where neither is so it climbs, but not to a finer mesh where of two coarser ones that are there one
+has lost states: it loses them too. Of the cheapest rung that like muscles prove it takes the finest
+mesh that they prove and that costs at most ``MORE`` times as much, which mostly serves a tighter
+tolerance too. Pure but for the two functions that it is given: what a rung gives is asked of
+``solve``, what is there already of ``known``.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from math import inf, nan
+from math import inf, isfinite, nan
 from typing import Any
 
 import numpy as np
@@ -33,6 +36,7 @@ BY_COARSER = {  # error of a mesh by its difference from the next coarser one of
 }
 START = 40  # states that cost as much as getting to the first one
 CHEAP = 0.6  # of the cost of all states: a check at a few of them that costs more is not worth it
+MORE = 1.5  # times the cost of a mesh that holds: a finer one is taken for so much
 TELLING = 4  # states at most of a check
 Solve = Callable[[Case], Solution]
 Known = Callable[[Case], Solution | None]
@@ -207,7 +211,8 @@ class _Climb:
         good = is_answer(case, self.solved[name])
         every = self._meshes(self.names[-1])
         meshes = [each for each in every if each in self.solved]
-        if self.names[-1] in meshes and len(meshes) >= min(2, len(every)):
+        last = self.names[-1]
+        if (last in meshes or self._given_up(last)) and len(meshes) >= min(2, len(every)):
             good |= ~np.any([is_valid(self.solved[n]) for n in meshes], axis=0)
         if ZERO not in self.asked.judged:
             good = good[: len(case.path.stops)]
@@ -241,6 +246,8 @@ class _Climb:
         pair = self.solved[coarser], self.solved[name]
         case = self.asked.rungs[coarser]
         off = max((difference(case, *pair, each) for each in self.asked.judged), key=_worse)
+        if not isfinite(off):  # the coarser one has lost states: it says nothing of others
+            return None
         error = BY_COARSER[mesh] * off
         return Verdict(error, float(error <= self.asked.tolerance), f"measured here by {coarser}")
 
@@ -262,12 +269,16 @@ class _Climb:
     # --- what to do -------------------------------------------------------------------------------
 
     def _holding(self) -> str | None:
-        """The cheapest rung that holds; of those that are there the most exact, at no cost."""
-        holding = [name for name in self.names if self.verdict(name).holds]
+        """The rung to take of those that hold; of those that are there the most exact."""
+        names = [name for name in self.names if not self._given_up(name)]
+        holding = [name for name in names if self.verdict(name).holds]
         there = [name for name in holding if name in self.solved]
         if there or not holding:
             return there[-1] if there else None
-        return min(holding, key=lambda name: self._expected(name, holding))
+        expected = {name: self._expected(name, holding) for name in holding}
+        cheapest = min(expected, key=expected.__getitem__)
+        meshes = [n for n in self._meshes(cheapest) if n in expected]  # finest first
+        return next(n for n in meshes if expected[n] <= MORE * expected[cheapest])
 
     def _expected(self, name: str, holding: list[str]) -> float:
         """Seconds of a rung, and of the next one where it loses states."""
@@ -283,7 +294,7 @@ class _Climb:
         meshes = self._meshes(holding)
         sure, below = self._seconds(holding), meshes[meshes.index(holding) + 1 :]
         for fine, coarse in pairwise(below):
-            if self._by_coarser(fine) or self.verdict(fine).error == inf:
+            if self._by_coarser(fine) or self.verdict(fine).error == inf or self._given_up(fine):
                 continue
             new = [name for name in (coarse, fine) if name not in self.solved]
             own = sum(self._seconds(name) for name in new)
@@ -311,8 +322,15 @@ class _Climb:
 
     def _unguessed(self) -> str:
         """Without a guess: the meshes of the best model, from the coarsest to the finest."""
-        meshes = self._meshes(self.names[-1])[::-1]
+        meshes = [n for n in self._meshes(self.names[-1])[::-1] if not self._given_up(n)]
         return next((name for name in meshes if name not in self.solved), meshes[-1])
+
+    def _given_up(self, name: str) -> bool:
+        """Whether a mesh is not tried: of two coarser ones that are there one has lost states."""
+        meshes = self._meshes(name)
+        coarser = [self.solved[n] for n in meshes[meshes.index(name) + 1 :] if n in self.solved]
+        lost = [not is_valid(each).all() for each in coarser]
+        return name not in self.solved and len(lost) > 1 and any(lost)
 
     def _best(self) -> str:
         """The most exact of those that have most states."""

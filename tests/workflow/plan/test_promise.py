@@ -173,6 +173,35 @@ def test_two_meshes_are_cheaper_than_the_finest(meshes, monkeypatch):
     assert (end.rung, end.by) == ("solid", "measured here by solid, coarser")
 
 
+def test_a_better_rung_is_taken_that_costs_hardly_more(meshes, monkeypatch):
+    known = {"solid_coarser": 4e-3, "solid": 1e-3, "solid_finer": 1e-4}
+    guessed(monkeypatch, cylinder=0.1, membrane=0.03, **known)
+    solver = Solver(meshes)
+    assert kept(meshes, solver, 0.01).rung == "solid"
+    assert kept(meshes, solver, 0.005).rung == "solid"
+    assert solver.asked == [("solid", 5)]
+    monkeypatch.setattr(module, "MORE", 1.0)
+    assert kept(meshes, Solver(meshes), 0.01).rung == "solid, coarser"
+
+
+def test_a_mesh_is_not_refined_further_where_two_have_lost_states(meshes, monkeypatch):
+    guessed(monkeypatch)
+    solver = Solver(meshes, lost=("solid, coarser", "solid"), solid_coarser=0.02)
+    end = kept(meshes, solver, 0.01)
+    assert solver.asked == [("solid, coarser", 5), ("solid", 5)]
+    assert (end.rung, end.holds, end.by) == ("solid", False, "measured here by solid, coarser")
+    assert kept(meshes, solver, 0.05).holds
+
+
+def test_a_coarser_mesh_that_has_lost_states_says_nothing_of_a_finer_one(meshes, monkeypatch):
+    known = {"solid_coarser": 9e-3, "solid": 3e-3, "solid_finer": 1e-4}
+    guessed(monkeypatch, cylinder=0.1, membrane=0.03, **known)
+    solver = Solver(meshes, lost=("solid, coarser",))
+    solver(meshes["solid, coarser"])
+    end = kept(meshes, solver, 0.01)
+    assert (end.rung, end.holds, end.by) == ("solid", True, "estimated from 99 like muscles")
+
+
 def test_the_best_there_is_is_no_promise_kept(meshes, monkeypatch):
     guessed(monkeypatch)
     solver = Solver(meshes, solid_coarser=0.9, solid=0.3)
