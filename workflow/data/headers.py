@@ -93,17 +93,34 @@ class Word:
 
 OF_MUSCLES = (
     Word(
-        ("pressure", "press", "druck", "pression", "presion", "pressione", "druk"),
+        (
+            *("pressure", "press", "druck", "pression", "presion", "pressione", "druk", "pressao"),
+            *("cisnienie", "\u5727\u529b", "\u538b\u529b", "\u538b\u5f3a"),
+        ),
         ("p",),
         {PRESSURE: "pressure"},
     ),
     Word(
-        ("force", "kraft", "load", "tension", "last", "fuerza", "forza", "effort", "loadcell"),
+        (
+            *("force", "kraft", "load", "tension", "last", "fuerza", "forza", "effort", "loadcell"),
+            *("forca", "kracht", "sila", "si\u0142a", "\u5f35\u529b", "\u62c9\u529b"),
+        ),
         ("f", "fz", "fx", "fax"),
         {FORCE: "force"},
     ),
     Word(
-        ("contraction", "kontraktion", "contraccion", "contrazione", "shortening", "verkuerzung"),
+        (
+            *(
+                "contraction",
+                "kontraktion",
+                "contraccion",
+                "contrazione",
+                "contracao",
+                "contractie",
+            ),
+            *("shortening", "verkuerzung", "raccourcissement", "accorciamento", "acortamiento"),
+            *("skurcz", "\u53ce\u7e2e\u7387", "\u6536\u7f29\u7387"),
+        ),
         ("eps", "epsilon", "contr", "kappa", "h", "e", "k"),
         {RATIO: "contraction", LENGTH: "stroke"},
     ),
@@ -117,12 +134,14 @@ OF_MUSCLES = (
             "verschiebung",
             "strokelength",
             "position",
+            *("course", "corsa", "carrera", "curso", "slag", "skok", "\u4f4d\u79fb"),
+            *("deplacement", "spostamento", "desplazamiento", "\u5909\u4f4d"),
         ),
         ("s", "disp", "dl", "deltal", "dx", "deltall0", "dll0", "deltall", "dll"),
         {LENGTH: "stroke", RATIO: "contraction"},
     ),
     Word(
-        ("length", "laenge", "longueur", "longitud", "lunghezza"),
+        ("length", "laenge", "longueur", "longitud", "lunghezza", "lengte", "comprimento"),
         ("l", "len"),
         {LENGTH: "length"},
     ),
@@ -273,6 +292,7 @@ def _tokens(text: str) -> list[str]:
     text = re.sub(area, r" \1per\g<2>2 ", text)
     text = re.sub(r"(?<![A-Za-z])(mm/mm|m/m|in/in)(?![A-Za-z])", " fraction ", text)
     text = text.replace("%", " % ").replace("\u2030", " \u2030 ")
+    text = re.sub(r"(?<=[a-z]{4})(?=[A-Z])", " ", text)  # ForceN, PressureBar
     text = re.sub(r"(?<=[a-z])(?=(MPa|kPa|hPa|kN)$)", " ", text)
     text = re.sub(r"(?<=[a-jl-z]{2})(?=(Pa|N)$)", " ", text)
     found = re.split(r"[\s_/,:;.|\-\[\](){}<>=]+", text)

@@ -7,7 +7,7 @@ from workflow.study.errors import StudyError, printable
 
 KINDS: dict[bytes | tuple[bytes, ...], str] = {  # by first bytes
     (b"\xff\xfe", b"\xfe\xff"): 'UTF-16, as "Unicode text" of spreadsheets',
-    (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"): "a file of a spreadsheet or an archive",
+    (b"PK\x03\x04", b"\xd0\xcf\x11\xe0", b"\x1f\x8b"): "a file of a spreadsheet or an archive",
 }
 LARGEST = 1_000_000  # bytes; a study of a thousand muscles has a tenth of that
 

@@ -134,6 +134,24 @@ FILES = {  # name: text or bytes
         "Load\tPressure\tPosition\n(kg)\t(bar)\t(mm)\n",
         lambda p, e, f: f"{f / 9.80665:.9g}\t{10 * p:g}\t{LENGTH * e:g}\t",
     ),
+    "Portuguese": written(
+        "Press\u00e3o (bar);Contra\u00e7\u00e3o (%);For\u00e7a (N)\n",
+        lambda p, e, f: comma(f"{10 * p:g};{100 * e:g};{f}"),
+    ),
+    "French": written(
+        "Pression [kPa];Course [mm];Effort [N]\n", lambda p, e, f: f"{1e3 * p:g};{LENGTH * e:g};{f}"
+    ),
+    "Polish": written(
+        "Ci\u015bnienie [bar];Skok [mm];Si\u0142a [N]\n",
+        lambda p, e, f: comma(f"{10 * p:g};{LENGTH * e:g};{f}"),
+    ),
+    "Japanese": written(
+        "\u5727\u529b[MPa],\u53ce\u7e2e\u7387[%],\u5f35\u529b[N]\n",
+        lambda p, e, f: f"{p},{100 * e:g},{f}",
+    ),
+    "names without gaps": written(
+        "PressureBar,ContractionPercent,ForceN\n", lambda p, e, f: f"{10 * p:g},{100 * e:g},{f}"
+    ),
     "words between": written(
         "pressure_MPa,contraction,force_N\n", right, TRUE[:3], "second run,,\n"
     )
@@ -314,6 +332,7 @@ REFUSED = {  # text, what the line says
         ),
         "forces.csv:1: .*no text in UTF-8; perhaps Latin-1, with '\u00b0'",
     ),
+    "packed": (b"\x1f\x8b\x08\x00rest", "a file of a spreadsheet or an archive"),
     "a spreadsheet": (b"PK\x03\x04rest", "a file of a spreadsheet"),
     "empty": ("", "there is no force in it"),
     "words only": ("nothing\nhere\n", "no line has two numbers"),
