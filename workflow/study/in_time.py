@@ -21,6 +21,7 @@ from workflow.study.errors import StudyError
 from workflow.study.schema import HELD_KEY, SWEPT_KEY, MemoryEntry, Scene
 from workflow.study.source import Keys, Source
 
+FEWEST_SAMPLES = 4  # of a wave
 FLAT, LISTED = ("per_decade", "from", "to"), ("shares", "times")
 
 
@@ -126,6 +127,18 @@ def check(source: Source, keys: Keys, scene: Scene) -> Iterator[StudyError]:
     if own == "cycle" and not waved and entry.period is not None:
         allowed = "none with a table, whose last time it is"
         yield source.refuse((*keys, own, "period"), list(entry.period), allowed)
+        wrong = True
+    low = [period for period in (entry.period or () if own == "cycle" else ()) if period <= 0]
+    if low:
+        yield source.refuse((*keys, own, "period"), low[0], "periods > 0 (s)")
+        wrong = True
+    if waved and (entry.samples < FEWEST_SAMPLES or entry.samples % 2):
+        allowed = f"an even number >= {FEWEST_SAMPLES}: others miss where a wave turns"
+        yield source.refuse((*keys, own, "samples"), entry.samples, allowed)
+        wrong = True
+    if own == "transient" and entry.step > entry.duration:
+        allowed = f"at most duration, {entry.duration:g} (s)"
+        yield source.refuse((*keys, own, "step"), entry.step, allowed)
         wrong = True
     if waved and not wrong and len(getattr(scene, swept)) != 2:
         given = list(getattr(scene, swept))
