@@ -20,6 +20,7 @@ from solver.process import Family, wait
 
 PATH = Path(__file__).parent / "path"  # solution control, which every program includes
 DEBIAN_PLUGINS = Path("/usr/lib/freefem++")  # where Debian puts them; its program looks elsewhere
+CLOCK = Path(sys.prefix, "lib/muscle_clock.so")  # solver/clock.c, compiled by ./setup.sh
 CHECK_ANSWER, CHECK_TIME = "FreeFEM is ready: 2", 20.0  # s
 LONGEST = 200  # characters of a line that is quoted
 LOG_TAIL = 15  # lines of the log that a message quotes
@@ -158,7 +159,7 @@ def environment(includes: Sequence[Path] = (PATH,)) -> dict[str, str]:
     """The caller's environment, with our folders of includes searched first and one thread.
 
     FreeFEM looks for an include in the working directory and in FF_INCLUDEPATH, not beside the
-    program that includes it.
+    program that includes it. It takes our clock, where that is compiled.
     """
     folders = [*map(str, includes), *filter(None, [os.environ.get("FF_INCLUDEPATH")])]
     own = {
@@ -168,6 +169,8 @@ def environment(includes: Sequence[Path] = (PATH,)) -> dict[str, str]:
     }
     if DEBIAN_PLUGINS.is_dir():
         own["FF_LOADPATH"] = os.environ.get("FF_LOADPATH", str(DEBIAN_PLUGINS))
+    if CLOCK.is_file() and not set(" :") & set(str(CLOCK)):  # these divide what is loaded
+        own["LD_PRELOAD"] = f"{os.environ.get('LD_PRELOAD', '')} {CLOCK}".strip()
     return os.environ | own
 
 

@@ -13,7 +13,7 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parent.parent
 # all that setup.sh may call before it installs anything
-TOOLS = ["awk", "bash", "dirname", "env", "readlink", "sha256sum"]
+TOOLS = ["awk", "bash", "dirname", "env", "readlink", "rm", "sha256sum", "uname"]
 
 
 LOCKS = ("requirements.lock", "requirements-slurm.lock")
@@ -72,7 +72,9 @@ def bare_machine(tmp_path: Path):
         path.write_text(f"#!/bin/sh\n{body}\n")
         path.chmod(0o755)
 
-    def run(libraries: list[str], *, freefem: bool) -> subprocess.CompletedProcess[str]:
+    def run(
+        libraries: list[str], *, freefem: bool, python: Path = Path("/bin/false")
+    ) -> subprocess.CompletedProcess[str]:
         program("id", "echo 1000")
         program(
             "ldconfig", "\n".join(f"echo '{name} (libc6) => /lib/{name}'" for name in libraries)
@@ -82,7 +84,7 @@ def bare_machine(tmp_path: Path):
             program("FreeFem++", "exit 0")
         return subprocess.run(
             [programs / "bash", checkout / "setup.sh"],
-            env={"PATH": str(programs), "PYTHON": "/bin/false"},
+            env={"PATH": str(programs), "PYTHON": str(python)},
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -118,6 +120,19 @@ def test_old_python_is_refused(bare_machine) -> None:
     result = bare_machine(libraries, freefem=True)
     assert result.returncode == 1
     assert "Python 3.11 or newer" in result.stderr
+
+
+def test_what_a_link_leads_to_is_not_cleared(bare_machine, tmp_path) -> None:
+    theirs = tmp_path / "theirs"
+    (theirs / "bin").mkdir(parents=True)
+    (tmp_path / "checkout" / ".venv").symlink_to(theirs)
+    python = tmp_path / "python"  # makes none, and would empty what it is told to make anew
+    python.write_text('#!/bin/sh\n[ "$2" != venv ] || rm -rf .venv/bin && [ "$2" != venv ]\n')
+    python.chmod(0o755)
+    libraries = re.findall(r"(lib\w+\.so\.\d+):", (ROOT / "setup.sh").read_text())
+    result = bare_machine(libraries, freefem=True, python=python)
+    assert "could not make .venv" in result.stderr
+    assert (theirs / "bin").is_dir()
 
 
 def test_hooks_before_a_commit_are_the_linters_of_ci():

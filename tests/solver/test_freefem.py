@@ -190,6 +190,41 @@ def test_what_a_program_says_of_its_cost(run, tmp_path):
     assert both.seconds == 2 * usage.seconds
 
 
+def test_our_clock_is_right_and_no_call_of_the_kernel(run, tmp_path, monkeypatch):
+    """FreeFEM reads it twice for every statement in braces."""
+    assert freefem.CLOCK.is_file(), "./setup.sh compiles it"
+    text = (
+        "int n = 0; for (int i = 0; i < 100000; ++i) { ++n; --n; }\n"
+        'system("sleep 0.5"); ofstream out("found.txt"); out << clock();'
+    )
+
+    def used():
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_stime
+        usage = run(text)
+        said = float((tmp_path / "found.txt").read_text())
+        return (
+            usage.cpu_seconds,
+            said,
+            resource.getrusage(resource.RUSAGE_CHILDREN).ru_stime - before,
+        )
+
+    spent, said, system = used()
+    assert said == pytest.approx(spent, rel=0.2)  # what is slept is not used
+    monkeypatch.setattr(freefem, "CLOCK", tmp_path / "none")
+    assert system < 0.5 * used()[2]
+
+
+@pytest.mark.parametrize("folder", ["a b", "a:b"])
+def test_a_clock_whose_path_divides_is_not_loaded(monkeypatch, tmp_path, folder):
+    monkeypatch.setenv("LD_PRELOAD", "theirs.so")
+    for name, loaded in ((folder, "theirs.so"), ("c;d", f"theirs.so {tmp_path}/c;d/clock.so")):
+        clock = tmp_path / name / "clock.so"
+        clock.parent.mkdir()
+        clock.touch()
+        monkeypatch.setattr(freefem, "CLOCK", clock)
+        assert freefem.environment()["LD_PRELOAD"] == loaded
+
+
 def test_the_check_finds_nothing_wrong():
     start = time.monotonic()
     freefem.check()
