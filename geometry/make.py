@@ -18,10 +18,10 @@ FOLDER = Path(__file__).parent
 
 def kinds() -> list[str]:
     """Kinds of files: modules of this package that make one of a specification."""
-    return [path.stem for path in sorted(FOLDER.glob("*.py")) if _module(path.stem)]
+    return [path.stem for path in sorted(FOLDER.glob("*.py")) if load(path.stem)]
 
 
-def _module(kind: object) -> Any:
+def load(kind: object) -> Any:
     """The module of a kind; None if there is none."""
     known = isinstance(kind, str) and kind.isidentifier() and (FOLDER / f"{kind}.py").is_file()
     if not known or kind == "__main__":
@@ -39,7 +39,7 @@ def make(spec: Mapping[str, Any], output: Path) -> None:
         Naming the field, its value and what is allowed.
     """
     kind = spec.get("kind") if isinstance(spec, Mapping) else None
-    module = _module(kind)
+    module = load(kind)
     if module is None:
         raise UnbuildableMesh("kind", kind, ", ".join(kinds()))
     keys = {"kind", "muscle", *module.KEYS}

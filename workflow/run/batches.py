@@ -25,7 +25,7 @@ from signal import Signals
 from typing import Protocol
 
 from geometry import attempt
-from geometry.make import make
+from geometry.make import load, make
 from geometry.seal import write_why_none
 from solver import record, sources
 from solver.case import Case, digest
@@ -178,6 +178,9 @@ def solve(cases: Cases, cores: int, limits: Limits, log: Path) -> int:
     if any(task.name not in cases or cases[task.name].promise for task in tasks):
         with suppress(ImportError, OSError):  # the mesher says so
             import gmsh  # noqa: F401  once, for all processes
+        kinds = {MODELS[asked.case.model].mesh for asked in cases.values()} - {None}
+        for kind in kinds:
+            load(kind)
     for folder in (log.parent, MESHES):
         folder.mkdir(parents=True, exist_ok=True)
     lost = 0
