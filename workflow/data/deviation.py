@@ -10,6 +10,7 @@ ways show how much a mean depends on that.
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -68,10 +69,13 @@ class _Surface(ForceMap):
     def force(self, contraction: ArrayLike, pressure: float) -> NDArray[np.float64]:
         """Force of the surface [N]; NaN where the map itself has none."""
         contraction = np.asarray(contraction, dtype=float)
-        p, e, force = self.points[(self.points[:, 0] > 0) & (self.points[:, 1] >= 0)].T
-        found = np.linalg.lstsq(_terms(p, e), force, rcond=None)[0]
-        smooth = _terms(np.full(contraction.shape, pressure), contraction) @ found
+        smooth = _terms(np.full(contraction.shape, pressure), contraction) @ self._fitted
         return np.where(np.isfinite(super().force(contraction, pressure)), smooth, np.nan)
+
+    @cached_property
+    def _fitted(self) -> NDArray[np.float64]:
+        p, e, force = self.points[(self.points[:, 0] > 0) & (self.points[:, 1] >= 0)].T
+        return np.asarray(np.linalg.lstsq(_terms(p, e), force, rcond=None)[0])
 
 
 def _terms(p: NDArray[np.float64], e: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -148,15 +152,22 @@ def table(found: Table, maps: Mapping[str, Mapping[str, ForceMap]]) -> pd.DataFr
     """
     curves = found.curves
     compared = found.part((curves["path"] == PathKind.ISOBARIC) & curves["muscle"].isin(maps))
+    ways = {
+        muscle: [
+            (name, how, interpolated(reference, how))
+            for name, reference in its.items()
+            for how in INTERPOLATIONS
+        ]
+        for muscle, its in maps.items()
+    }
     rows = [
         {"model": model, "muscle": muscle, "variant": variant, "reference": name}
         | {"interpolation": how, "pressure [MPa]": pressure, **values}
         for (muscle, model, variant), of_curves in sorted(
             compared.joined().groupby(["muscle", "model", "variant"]), key=_order
         )
-        for name, reference in maps[muscle].items()
-        for how in INTERPOLATIONS
-        for pressure, values in _by_pressure(states(interpolated(reference, how), of_curves))
+        for name, how, reference in ways[muscle]
+        for pressure, values in _by_pressure(states(reference, of_curves))
     ]
     return pd.DataFrame(rows)
 

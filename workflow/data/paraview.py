@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,7 +129,7 @@ def write_series(path: Path, output: Path, view: View | None = None) -> int:
     for state in _states(solution):
         part = output.with_suffix("") / f"{state:04d}.vtu"
         _write(case, solution, state, part, view or View())
-        where = quoteattr(f"{part.parent.name}/{part.name}")
+        where = _quoted(f"{part.parent.name}/{part.name}")
         lines.append(f'    <DataSet timestep="{times[state]!r}" part="0" file={where}/>\n')
     with atomic_write(output) as beside:
         beside.write_text(
@@ -203,10 +202,17 @@ def _write(case: Case, solution: Solution, state: int, output: Path, view: View)
         beside.write_bytes(_with_numbers(beside.read_bytes(), numbers))
 
 
+def _quoted(text: str) -> str:
+    """An attribute of XML."""
+    from xml.sax.saxutils import quoteattr  # late: it takes all of urllib along
+
+    return quoteattr(text)
+
+
 def _with_numbers(content: bytes, numbers: Mapping[str, float]) -> bytes:
     """A VTU file with numbers as field data, which meshio reads and does not write."""
     arrays = "".join(
-        f'<DataArray type="Float64" Name={quoteattr(name)} NumberOfTuples="1" format="ascii">'
+        f'<DataArray type="Float64" Name={_quoted(name)} NumberOfTuples="1" format="ascii">'
         f"{value!r}</DataArray>\n"
         for name, value in numbers.items()
         if np.isfinite(value)

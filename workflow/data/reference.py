@@ -66,9 +66,8 @@ class ForceMap:
         if around is None:
             return np.full(contraction.shape, np.nan)
         below, above, share = around
-        return (1 - share) * self._curve(below)(contraction) + share * self._curve(above)(
-            contraction
-        )
+        low, high = self._known(below), self._known(above)
+        return (1 - share) * low(contraction) + share * high(contraction)
 
     def inside(self, contraction: ArrayLike, pressure: float) -> NDArray[np.bool_]:
         """Which states the map says something of."""
@@ -100,6 +99,16 @@ class ForceMap:
         points = self.points[self.points[:, 0] == pressure]
         points = points[np.argsort(points[:, 1])]
         return points[:, 1], points[:, 2]
+
+    @cached_property
+    def _curves(self) -> dict[float, Callable[[NDArray[np.float64]], NDArray[np.float64]]]:
+        """Those that have been asked for, by tabulated pressure."""
+        return {}
+
+    def _known(self, pressure: float) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+        if pressure not in self._curves:
+            self._curves[pressure] = self._curve(pressure)
+        return self._curves[pressure]
 
     def _curve(self, pressure: float) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
         """Force against contraction at a tabulated pressure; a single point is no curve."""
