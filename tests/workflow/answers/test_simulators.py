@@ -1,6 +1,7 @@
 """What simulators make of a map: an FMU by fmpy, a mass by SciPy, a tendon by MuJoCo."""
 
 import re
+import subprocess
 from pathlib import Path
 
 import fmpy
@@ -50,6 +51,52 @@ def test_the_fmu_is_valid_and_compiled(folder):
     file = str(folder / "results/maps/arm.fmu")
     assert fmpy.validation.validate_fmu(file) == []
     assert fmpy.platform in fmpy.supported_platforms(file), "no C compiler"
+
+
+def test_its_source_is_plain_c(arm, tmp_path):
+    (tmp_path / "muscle.c").write_text(fmu.source(arm))
+    words = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-c", "muscle.c"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_its_description_has_license_and_units(folder):
+    described = fmpy.read_model_description(str(folder / "results/maps/arm.fmu"))
+    assert described.license == "MIT"
+    dimensions = {
+        unit.name: (unit.baseUnit.kg, unit.baseUnit.m, unit.baseUnit.s)
+        for unit in described.unitDefinitions
+    }
+    assert dimensions["Pa"] == (1, -1, -2)
+    assert dimensions["N/m"] == (1, 0, -2)
+    assert {v.unit for v in described.modelVariables} == dimensions.keys()
+
+
+def test_beyond_the_table_the_log_says_so_once(folder, arm):
+    """Into 0.7 MPa, where there are 0.6, and back, twice."""
+    said = []
+    time = np.linspace(0, 1, 21)
+    p = 0.5e6 + 0.2e6 * np.abs(np.sin(2 * np.pi * time))
+    signal = np.array(
+        list(zip(time, p, np.full(21, 0.27), strict=True)),
+        dtype=[("time", float), ("p", float), ("l", float)],
+    )
+    found = fmpy.simulate_fmu(
+        str(folder / "results/maps/arm.fmu"),
+        stop_time=1.0,
+        step_size=0.05,
+        output_interval=0.05,
+        input=signal,
+        output=["F", "p", "valid"],
+        logger=lambda *given: said.append(given[4].decode()),
+    )
+    outside = found["p"] > 0.6e6
+    assert 0 < outside.sum() < 20
+    assert ((found["valid"] == 0) == outside).all()
+    np.testing.assert_allclose(found["F"][outside], arm(FORCE, 0.6, 0.1))
+    assert len(said) == 2
+    assert "pressure 6" in said[0]
+    assert "(it has 0 to 600000)" in said[0]
 
 
 def test_a_simulator_gets_the_forces_of_the_map(folder, arm):

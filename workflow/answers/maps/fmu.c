@@ -3,10 +3,16 @@
  * Written by workflow/answers/maps/fmu.py, which puts the tables where TABLES stands below: grids p
  * [MPa] and e [1], and of force [N] and volume [mm3] the value, both derivatives and the mixed one.
  * In a cell a quantity is the bicubic that has these at its corners, as in table.py beside it. Beyond
- * the grid it is that of the nearest state, and `valid` is 0. Outside everything is in SI units.
+ * the grid it is that of the nearest state, `valid` is 0, and the simulator's log says so. Outside
+ * everything is in SI units. SPDX-License-Identifier: MIT
  */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#ifdef __GNUC__ /* the standard says what functions are given; most need little of it */
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
 
 /*TABLES*/
 
@@ -21,7 +27,20 @@ enum { PRESSURE, LENGTH, FORCE, VOLUME, FORCE_BY_LENGTH, FORCE_BY_PRESSURE, VALI
 
 static const double MEGA = 1e6, MILLI = 1e-3;
 
-typedef struct { double value[VARIABLES]; } Muscle;
+typedef struct { /* what a simulator gives; of it the logger alone is called */
+    void (*logger)(void *environment, fmi2String name, fmi2Status, fmi2String category, fmi2String message, ...);
+    void *(*allocate)(size_t, size_t);
+    void (*release)(void *);
+    void (*finished)(void *, fmi2Status);
+    void *environment;
+} Callbacks;
+
+typedef struct {
+    double value[VARIABLES];
+    const Callbacks *callbacks;
+    char name[80];
+    int warned; /* that it is outside of the table, where it still is */
+} Muscle;
 
 static int cell(const double *grid, int count, double x) {
     int low = 0, high = count - 1;
@@ -74,9 +93,25 @@ static void evaluate(Muscle *muscle) {
                && FOUND[i*NE + j + 1] && FOUND[(i + 1)*NE + j + 1];
 }
 
+/* Say that a state has left the table, once each time that it does. */
+static void warn(Muscle *muscle) {
+    double *v = muscle->value, length = LENGTH_AT_REST*MILLI;
+    double shortest = length*(1 - E[NE - 1]), longest = length*(1 - E[0]);
+    int is_new = !v[VALID] && !muscle->warned;
+    muscle->warned = !v[VALID];
+    if (!is_new || !muscle->callbacks || !muscle->callbacks->logger) return;
+    char said[300];
+    snprintf(said, sizeof said,
+             "no state of the table: pressure %g Pa (it has %g to %g), length %g m (it has %g to %g, "
+             "not all of them at every pressure); the force is that of the nearest state, valid is 0",
+             v[PRESSURE], P[0]*MEGA, P[NP - 1]*MEGA, v[LENGTH], shortest, longest);
+    muscle->callbacks->logger(muscle->callbacks->environment, muscle->name, fmi2Warning, "outside", "%s", said);
+}
+
 static void start(Muscle *muscle) {
     muscle->value[PRESSURE] = P[0]*MEGA;
     muscle->value[LENGTH] = LENGTH_AT_REST*MILLI;
+    muscle->warned = 0;
     evaluate(muscle);
 }
 
@@ -90,7 +125,10 @@ fmi2Component fmi2Instantiate(fmi2String name, int type, fmi2String guid, fmi2St
                               const void *functions, fmi2Boolean visible, fmi2Boolean logging) {
     if (!guid || strcmp(guid, GUID)) return NULL;
     Muscle *muscle = calloc(1, sizeof *muscle);
-    if (muscle) start(muscle);
+    if (!muscle) return NULL;
+    muscle->callbacks = functions;
+    if (name) strncpy(muscle->name, name, sizeof muscle->name - 1);
+    start(muscle);
     return muscle;
 }
 void fmi2FreeInstance(fmi2Component c) { free(c); }
@@ -118,6 +156,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference *which, size_t 
 }
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real now, fmi2Real step, fmi2Boolean keep) {
     evaluate(c);
+    warn(c);
     return fmi2OK;
 }
 

@@ -24,6 +24,15 @@ NAME = "muscle"
 PLATFORMS = {("Linux", "x86_64"): ("linux64", ".so"), ("Darwin", "x86_64"): ("darwin64", ".dylib")}
 LONGEST = 120.0  # s, of compiling
 THEN = (2000, 1, 1, 0, 0, 0)  # date of files in an archive: of the same map the same bytes
+UNITS = {  # in SI base units
+    "1": "",
+    "N": 'kg="1" m="1" s="-2"',
+    "N/Pa": 'm="2"',
+    "N/m": 'kg="1" s="-2"',
+    "Pa": 'kg="1" m="-1" s="-2"',
+    "m": 'm="1"',
+    "m3": 'm="3"',
+}
 VARIABLES = (  # name, unit, causality, what it is; in the order of fmu.c
     ("p", "Pa", "input", "pressure above that of the air around"),
     ("l", "m", "input", "length between the fittings"),
@@ -88,7 +97,9 @@ def _guid(tables: str) -> str:
 def description(made: Map) -> str:
     """Its modelDescription.xml."""
     starts = {"p": made.pressure[0] * 1e6, "l": made.length * 1e-3}
-    units = sorted({unit for _, unit, _, _ in VARIABLES})
+    units = "".join(
+        f'<Unit name="{unit}"><BaseUnit {base}/></Unit>' for unit, base in UNITS.items()
+    )
     variables = "\n".join(
         f'    <ScalarVariable name="{name}" valueReference="{k}" causality="{causality}" '
         f'variability="continuous" description="{said}"><Real unit="{unit}"'
@@ -100,11 +111,13 @@ def description(made: Map) -> str:
     listed = "".join(f'<Unknown index="{k}" dependencies="1 2"/>' for k in outputs)
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="{made.muscle}" guid="{_guid(_tables(made))}"
-    description="Pneumatic muscle {made.muscle}, by {made.model}" numberOfEventIndicators="0">
+    description="Pneumatic muscle {made.muscle}, by {made.model}" license="MIT"
+    generationTool="muscle map" variableNamingConvention="flat" numberOfEventIndicators="0">
   <CoSimulation modelIdentifier="{NAME}" canHandleVariableCommunicationStepSize="true">
     <SourceFiles><File name="{NAME}.c"/></SourceFiles>
   </CoSimulation>
-  <UnitDefinitions>{"".join(f'<Unit name="{unit}"/>' for unit in units)}</UnitDefinitions>
+  <UnitDefinitions>{units}</UnitDefinitions>
+  <LogCategories><Category name="outside" description="states that the table has not"/></LogCategories>
   <ModelVariables>
 {variables}
   </ModelVariables>
