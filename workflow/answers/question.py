@@ -20,7 +20,7 @@ from workflow.answers.quick import Quick
 from workflow.answers.store import Store
 from workflow.answers.studies import with_muscle
 from workflow.data.strain import judged
-from workflow.plan import model_choice
+from workflow.plan import effect_states, like_muscles, model_choice
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import StudyError, choices
 from workflow.study.folders import DEFAULT
@@ -274,12 +274,13 @@ class _Question:
         found = {**{kind: state[kind] for kind in KINDS}, **known}
         thread = self.studied.thread.stiffness if self.studied.thread else math.nan
         tension = max(thread * (state["thread_stretch_max"] - 1), 0.0)
+        error, from_others = self._error(rung, asked, found, state)
         return Answer(
             muscle=self.name,
             model=model,
             asked=asked,
             **found,
-            error=self._error(rung, asked, found, state),
+            error=error,
             length=muscle.length * (1 - found[CONTRACTION]),
             stroke=muscle.length * found[CONTRACTION],
             stiffness=state["stiffness"],
@@ -290,7 +291,7 @@ class _Question:
             thread_force=tension,
             thread_share=tension / strength if strength else math.nan,
             rubber_stretch=state["rubber_stretch_max"],
-            notes=(*notes, *self._notes(found), *filter(None, solution.notes)),
+            notes=(*notes, *self._notes(found), *filter(None, (from_others, *solution.notes))),
             case=case.key,
             solves=sum(self.store.solves.values()),
         )
@@ -333,19 +334,37 @@ class _Question:
 
     def _error(
         self, rung: str, asked: str, found: Mapping[str, float], state: Mapping[str, float]
-    ) -> float:
-        """What model and mesh are expected to be off, in the unit of what is asked."""
+    ) -> tuple[float, str]:
+        """What model and mesh are expected to be off, in the unit of what is asked; and a note."""
         if self.studied.thread is None:
-            return math.nan  # never measured
-        estimates = model_choice.estimates(self.study, self._scene(found))
-        share = next((e.error for e in estimates if e.rung.name == rung), math.nan)
+            return math.nan, ""  # never measured
+        share, note = self._share(rung, found)
         newtons = share * abs(self.quick.force(found[PRESSURE], 0.0))
         slopes = {
             FORCE: 1.0,
             CONTRACTION: state["stiffness"] * self.studied.muscle.length,
             PRESSURE: state["force_by_pressure"],
         }
-        return newtons / abs(slopes[asked]) if slopes[asked] and newtons else math.nan
+        known = bool(slopes[asked] and newtons)
+        return newtons / abs(slopes[asked]) if known else math.nan, note
+
+    def _share(self, rung: str, found: Mapping[str, float]) -> tuple[float, str]:
+        """Expected error as a share of the largest force at its pressure, and a note on it.
+
+        That of the state, where this muscle was measured; else what 95 % of like muscles have at
+        most from rest to there; else the most that the muscle of the paper has on such curves.
+        """
+        scene, model = self._scene(found), _model_of(rung)
+        path = replace(
+            self._path(PathKind.ISOBARIC, found[PRESSURE], 0.0), stops=tuple(scene.swept)
+        )
+        case, at = self.studied.case(path, model), found[CONTRACTION]
+        measured = effect_states.at(case, at, model_choice.steps(rung))
+        if measured is None and (guess := like_muscles.guess(case, rung)):
+            return guess.high + model_choice.smearing(self.study, scene), ""
+        note = "" if measured else "its error is a guess: no muscle like this one was measured"
+        estimates = model_choice.estimates(self.study, scene, measured)
+        return next((e.error for e in estimates if e.rung.name == rung), math.nan), note
 
     def _notes(self, found: Mapping[str, float]) -> list[str]:
         """What the signs of a state mean."""

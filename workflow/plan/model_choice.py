@@ -130,6 +130,24 @@ def estimates(
     return tuple(_estimate(study, scene, rung, touched, measured) for rung in RUNGS.values())
 
 
+def steps(rung: str) -> list[str]:
+    """What a rung leaves out of the ones above it, and the mesh of the fullest."""
+    found, at = [], RUNGS.get(rung)
+    while at is not None:
+        found.append(at.step)
+        at = RUNGS[at.above] if at.above else None
+    return found
+
+
+def smearing(study: Study, scene: Scene) -> float:
+    """What smeared threads are expected to change, as a share of the largest value."""
+    measured = load()
+    return max(
+        _of_smearing(study, scene, measured, regime, error_factor(study, scene, measured, regime))
+        for regime in regimes(study, scene)
+    )
+
+
 def is_enough(estimate: Estimate, tolerance: float) -> bool:
     """Whether a rung is exact enough, and its mesh fine enough."""
     return estimate.error <= tolerance and estimate.mesh_error <= OF_MESH * tolerance

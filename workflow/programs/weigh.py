@@ -3,7 +3,7 @@
 import argparse
 
 from workflow.analyses.effects import weigh
-from workflow.plan import effect_costs
+from workflow.plan import effect_costs, effect_states
 from workflow.programs import add_study
 
 
@@ -15,5 +15,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """Write it."""
     weigh.measure(str(given.study))
-    print(f"written: {effect_costs.FILE.name}, {effect_costs.origin()}")
+    names = f"{effect_costs.FILE.name} and {effect_states.FILE.name}"
+    print(f"written: {names}, {effect_costs.origin()}")
     return 0

@@ -12,7 +12,7 @@ from workflow.analyses.analysis import Solved
 from workflow.analyses.effects import weigh
 from workflow.analyses.effects.cases import REGIMES, SETUPS, cases
 from workflow.analyses.effects.table import SWITCHES, table
-from workflow.plan import effect_costs
+from workflow.plan import effect_costs, effect_states
 from workflow.study.study import load
 
 from ..synthetic import converged
@@ -84,7 +84,15 @@ def test_what_was_weighed_comes_back_to_the_planner(asked, tmp_path, monkeypatch
     for key in by_key:
         cost = {"python_cpu_seconds": 0.5, "freefem_cpu_seconds": 1.0}
         (tmp_path / f"{key}.json").write_text(json.dumps(cost))
-    weigh.measure("", costs=tmp_path, file=tmp_path / "found.csv")
+    states = tmp_path / "states.csv"
+    weigh.measure("", costs=tmp_path, file=tmp_path / "found.csv", of_states=states)
     known = effect_costs.load(tmp_path / "found.csv")["normal", "isobaric", "cap_geometry"]
     assert (known.force, known.seconds_with) == (pytest.approx(0.02), 1.5)
     assert "analysis of effects of 20" in effect_costs.origin(tmp_path / "found.csv")
+    name = "cap_geometry"
+    first, later = (effect_states.at(normal[0].case, at, [name], states) for at in (0.01, 0.06))
+    assert first["normal", "isobaric", name].force == pytest.approx(0.02)  # at 0
+    assert later["normal", "isobaric", name].force == pytest.approx(0.02 * 22 / 30, abs=1e-5)  # 5 %
+    assert later["normal", "isometric", name] == effect_costs.load()["normal", "isometric", name]
+    assert effect_states.at(normal[0].case, 0.2, [name], states) is None
+    assert effect_states.at(normal[0].case, 0.06, ["twist"], states) is None

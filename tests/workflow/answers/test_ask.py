@@ -13,7 +13,7 @@ from workflow.__main__ import main
 from workflow.answers.quick import Quick
 from workflow.study import library
 from workflow.study.errors import StudyError
-from workflow.study.study import load
+from workflow.study.study import load, load_library
 
 ROOT = Path(__file__).parents[3]
 STUDY = ROOT / "config" / "config.yaml"
@@ -85,8 +85,24 @@ def test_a_record_of_other_sources_is_solved_again(ask):
     assert ask(**given).solves == 0
 
 
+def test_its_error_is_that_of_its_state(ask, study):
+    """Where the muscle was measured; elsewhere by like muscles, or with a note."""
+    near, far = (ask(pressure="0.3MPa", contraction=e) for e in ("7%", "14%"))
+    assert near.error < 0.4 * far.error
+    for found, e in ((near, "7%"), (far, "14%")):
+        off = abs(found.force - ask(pressure="0.3MPa", contraction=e, model="solid").force)
+        assert off < found.error
+    assert not near.notes
+    above = ask(pressure="0.45MPa", contraction="10%")  # by like muscles
+    off = abs(above.force - ask(pressure="0.45MPa", contraction="10%", model="solid").force)
+    assert off < above.error < 0.02 * 1000
+    assert not above.notes
+    soft = answers.ask("thin_2mm", pressure="0.3MPa", contraction="5%", study=load_library())
+    assert "no muscle like this one was measured" in soft.notes[0]
+
+
 def test_its_error_covers_the_more_exact_model(ask):
-    """At a state where the caps matter; nearer to rest they matter less than the estimate has."""
+    """At a state where the caps matter."""
     by = {
         model: ask(pressure="0.3MPa", contraction="14%", model=model)
         for model in ("cylinder", "membrane", "solid")

@@ -9,6 +9,8 @@ import pandas as pd
 from solver.load_path import PathKind
 from workflow.analyses.analysis import Solved
 from workflow.data.states import SHOWN
+from workflow.plan import effect_states
+from workflow.plan.model_choice import RUNGS
 from workflow.study.contents import Study
 
 SWITCHES = {  # what is left out: (setup with it, setup without); see cases.py
@@ -43,19 +45,47 @@ def table(solved: Sequence[Solved]) -> pd.DataFrame:
     the force or contraction that changes are a share of. ``work`` is unknowns times iterations; 1 a
     state where a model solves by itself.
     """
+    return pd.DataFrame(
+        [
+            {"regime": regime, "path": path, "effect": effect} | row(setups, *pair)
+            for (regime, path), setups in _curves(solved).items()
+            for effect, pair in SWITCHES.items()
+            if setups.keys() >= set(pair)
+        ]
+    )
+
+
+def states(solved: Sequence[Solved]) -> pd.DataFrame:
+    """Of isobaric curves what every effect changes of the force at every state.
+
+    A share of the largest force of the curve, as in ``table``; of the effects that the models of
+    the ladder leave out one by one.
+    """
+    steps, found = {rung.step for rung in RUNGS.values()}, []
+    for (regime, path), setups in _curves(solved).items():
+        for effect, (with_it, without) in SWITCHES.items():
+            if path != PathKind.ISOBARIC or effect not in steps or without not in setups:
+                continue
+            on, off = setups[with_it].at_stops, setups[without].at_stops
+            valid = on["status"].isin(SHOWN) & off["status"].isin(SHOWN)
+            changes = (off["force"] - on["force"]).abs() / on["force"][valid].abs().max()
+            groups = effect_states.groups(setups[with_it].asked.case)
+            of = {"regime": regime} | {k: float(f"{v:.6g}") for k, v in groups.items()}
+            found += [
+                of | {"effect": effect, "contraction": e, "force": float(f"{f:.4g}")}
+                for e, f in zip(on["contraction"][valid], changes[valid], strict=True)
+            ]
+    return pd.DataFrame(found, columns=list(effect_states.COLUMNS))
+
+
+def _curves(solved: Sequence[Solved]) -> dict[tuple[str, str], dict[str, Solved]]:
+    """Curves by their setups, by regime and path."""
     found: dict[tuple[str, str], dict[str, Solved]] = {}
     for one in solved:
         tags = one.asked.tags
         curve = str(tags["regime"]), str(tags["path"])
         found.setdefault(curve, {})[str(tags["setup"])] = one
-    return pd.DataFrame(
-        [
-            {"regime": regime, "path": path, "effect": effect} | row(setups, *pair)
-            for (regime, path), setups in found.items()
-            for effect, pair in SWITCHES.items()
-            if setups.keys() >= set(pair)
-        ]
-    )
+    return found
 
 
 def row(setups: Mapping[str, Solved], with_it: str, without: str) -> dict[str, Any]:

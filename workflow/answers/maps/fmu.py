@@ -117,7 +117,9 @@ def description(made: Map) -> str:
     <SourceFiles><File name="{NAME}.c"/></SourceFiles>
   </CoSimulation>
   <UnitDefinitions>{units}</UnitDefinitions>
-  <LogCategories><Category name="outside" description="states that the table has not"/></LogCategories>
+  <LogCategories>
+    <Category name="outside" description="states that the table has not"/>
+  </LogCategories>
   <ModelVariables>
 {variables}
   </ModelVariables>
