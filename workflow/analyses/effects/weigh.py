@@ -2,7 +2,7 @@
 
 import csv
 import json
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from datetime import date
 from pathlib import Path
@@ -44,7 +44,7 @@ def measure(
     _write(of_states, effect_states.COLUMNS, states(solved).to_dict("records"))
 
 
-def _write(file: Path, names: Sequence[str], rows: Sequence[Mapping[Hashable, Any]]) -> None:
+def _write(file: Path, names: Sequence[str], rows: Sequence[Mapping[Any, Any]]) -> None:
     with atomic_write(file) as beside, beside.open("w", newline="") as stream:
         stream.write(f"# analysis of effects of {date.today()}, code {code_digest(*MODELS)}\n")
         writer = csv.DictWriter(stream, names, extrasaction="ignore", lineterminator="\n")
