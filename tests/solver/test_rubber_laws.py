@@ -160,7 +160,7 @@ def test_slopes_are_those_of_the_energy(law):
         (law, model)
         for law in ALL
         for model in ("membrane", "solid", "cell")
-        if law not in ("mooney_rivlin", "neo_hooke")
+        if law != "mooney_rivlin"  # of test_derivatives.py
         and MATERIALS[law].has_frame(MODELS[model].frame)
     ],
 )

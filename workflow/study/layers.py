@@ -70,7 +70,10 @@ def resolved(
         if key in own:
             raise refuse(number, key, own[key], f"this key is not used by kind: {kind}")
     if "sense" not in own and kind is Kind.EMBEDDED:
-        raise refuse(number, "sense", None, ", ".join(SENSES))
+        allowed = (
+            f"{', '.join(SENSES)}; two layers in the wall are one of each, as `layer_depths` says"
+        )
+        raise refuse(number, "sense", None, allowed)
     threads = own.get("threads", common.get("threads"))
     if threads is None:
         raise refuse(number, "threads", None, "this key must be given, here or for the muscle")
