@@ -1,12 +1,14 @@
-"""Measure where the time of a run goes on this machine, and what accuracy costs."""
+"""Measure where the time of a run goes on this machine, what accuracy and steps of time cost."""
 
 import argparse
 import os
 
 from workflow.analyses.accuracy import benchmark
 from workflow.analyses.accuracy.costs import BENCHMARK
+from workflow.analyses.time import benchmark as steps_of_time
 from workflow.programs import add_study, results_of
 from workflow.run import times
+from workflow.study.study import load
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -14,13 +16,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_study(parser)
     parser.add_argument("--cores", type=int, default=os.cpu_count(), help="of the whole runs")
     parser.add_argument("--muscles", type=int, default=1000, help="of the study of one sweep")
-    parser.add_argument("--runs", type=int, default=3, help="of every case; medians are taken")
+    parser.add_argument("--runs", type=int, default=3, help="of every case")
 
 
 def run(given: argparse.Namespace) -> int:
     """Measure it."""
-    results = results_of(given)
-    table = results / "tables" / "benchmark.csv"
-    benchmark.make(given.study, given.runs, BENCHMARK, table)
-    times.make(given.study, given.cores, given.muscles, results / "tables" / "times.csv", print)
+    tables = results_of(given) / "tables"
+    benchmark.make(given.study, given.runs, BENCHMARK, tables / "benchmark.csv")
+    steps_of_time.make(load(given.study), given.runs, tables / "time_steps.csv", print)
+    times.make(given.study, given.cores, given.muscles, tables / "times.csv", print)
     return 0

@@ -3,6 +3,7 @@
 #   in   the table of the analysis, so that its figure has both
 #   out  results/cost.csv               medians of several runs one after the other
 #        results/tables/benchmark.csv   how cost grows
+#        results/tables/time_steps.csv  what a step of time costs, with memory and without
 #        results/tables/times.csv       where the time of whole runs goes: from scratch, with nothing
 #                                       to do, a thousand muscles of one sweep
 #        results/figures/accuracy.png   drawn again with these costs

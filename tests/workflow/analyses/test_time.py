@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver import net
-from workflow.analyses.time import cases, table
+from workflow.analyses.time import benchmark, cases, table
 from workflow.analyses.time.three_elements import ThreeElements
 from workflow.study.study import load
 
@@ -50,6 +50,20 @@ def test_the_sleeve_has_the_threads_of_the_muscle(study):
     rubbing = [one.case for one in cases.cases(study) if one.tags["set"] == "sleeve"]
     assert {case.friction.contact for case in rubbing} == set(cases.CONTACTS)
     assert not any(case.remembers for case in rubbing)
+
+
+def test_what_a_step_costs_leaves_out_the_start(study):
+    """3 ms a step of an elastic muscle and 4 with memory, beside 0.2 s of start and mesh."""
+    asked = benchmark.cases(study)
+    assert [one.case.remembers for one in asked[:4]] == [False, False, True, True]
+    per_step = {"elastic": 0.003, "memory": 0.004}
+    costs = [0.2 + 100 * one.tags["cycles"] * per_step[one.tags["rubber"]] for one in asked]
+    rows = benchmark.table(asked, costs)
+    assert rows["model"].to_list() == ["membrane", "cylinder", "solid"]
+    np.testing.assert_allclose(rows["step, elastic [ms]"], 3)
+    np.testing.assert_allclose(rows["ratio [1]"], 4 / 3)
+    np.testing.assert_allclose(rows["difference [ms]"], 1)
+    np.testing.assert_allclose(rows["three cycles, memory [s]"], 1.4)
 
 
 def test_tables(study):

@@ -52,7 +52,7 @@ def run(cases: Sequence[AnalysisCase], runs: int, say: Callable[[str], None]) ->
     """Medians of all costs, one row per case; ``say`` is told how it goes."""
     expected = [expected_seconds(asked) for asked in cases]
     with TemporaryDirectory() as scratch:
-        bench = _Bench(Path(scratch))
+        bench = Bench(Path(scratch))
         slow = bench.slowness(cases)
         total = slow * sum(expected) * runs
         say(f"{len(cases)} cases, {runs} runs each: about {duration(total)} on this machine")
@@ -78,7 +78,7 @@ def run(cases: Sequence[AnalysisCase], runs: int, say: Callable[[str], None]) ->
     return pd.DataFrame(rows)
 
 
-class _Bench:
+class Bench:
     """A folder in which cases are meshed and solved as the workflow does it."""
 
     def __init__(self, folder: Path) -> None:
@@ -155,8 +155,8 @@ def write(costs: pd.DataFrame, path: Path) -> None:
         costs.to_csv(stream, index=False)
 
 
-def machine() -> list[str]:
-    """What the seconds depend on."""
+def machine(of_runs: str = "medians") -> list[str]:
+    """What the seconds depend on, and what of several runs they are."""
     model = next(
         (
             line.partition(":")[2].strip()
@@ -174,7 +174,7 @@ def machine() -> list[str]:
     return [
         f"{model}, {os.cpu_count()} cores; {platform.system()} {platform.release()}",
         f"Python {platform.python_version()}, numpy {np.__version__}, FreeFEM {version}",
-        f"{time.strftime('%Y-%m-%d')}; {load}; medians of CPU seconds",
+        f"{time.strftime('%Y-%m-%d')}; {load}; {of_runs} of CPU seconds",
     ]
 
 
