@@ -128,11 +128,12 @@ def sheet(
     weight = HALF * float(curve.force(0.0)) if load is None else load
     outline, outline_at = _outline(curve)
     last = free if math.isfinite(free) else float(curve.contraction[-1])
-    how = "(p dV - dU - L int F de) / p dV, from the initial length to the free contraction"
+    ends = "free contraction" if math.isfinite(free) else f"{100 * last:.4g} %, as far as it goes"
+    how = f"(p dV - dU - L int F de) / p dV, from the initial length to {ends}"
     rows = (
         *_forces(curve, free, weight, given),
         *_energies(curve, studied, free, weight),
-        *_limits(curve, studied, last),
+        *_limits(curve, studied, last, ends),
         *_measures(studied),
         *_measured(curve, studied),
         Row("energy balance", curve.balance(last), "1", how),
@@ -192,19 +193,20 @@ def _energies(curve: Curve, studied: StudiedMuscle, free: float, load: float) ->
         yield Row("efficiency at the load", 100 * done / spent, "%", note)
 
 
-def _limits(curve: Curve, studied: StudiedMuscle, last: float) -> Iterator[Row]:
+def _limits(curve: Curve, studied: StudiedMuscle, last: float, ends: str) -> Iterator[Row]:
+    """The largest of what may not be too large up to ``last``, which ``ends`` says in words."""
     limits = studied.limits
     if studied.thread is not None:
         stretch = curve.largest("thread_stretch_max", last)
         tension = studied.thread.stiffness * max(stretch - 1, 0.0)
-        yield Row("largest thread force", tension, "N", "EA (stretch - 1), to free contraction")
+        yield Row("largest thread force", tension, "N", f"EA (stretch - 1), to {ends}")
         strength = limits.thread_strength
         share = tension / strength if strength else math.nan
         note = f"of {strength:g} N" if strength else "no thread_strength is given"
         yield Row("share of the thread's strength", 100 * share, "%", note)
     rubber = curve.largest("rubber_stretch_max", last)
     limit = limits.stretch_limit
-    note, fitted = "deformed by first length", limits.fitted_range
+    note, fitted = f"deformed by first length, to {ends}", limits.fitted_range
     if fitted is not None and rubber > fitted[1]:
         note += f"; its law was fitted up to {fitted[1]:g}"
     yield Row("largest rubber stretch", rubber, "1", note)
@@ -212,7 +214,7 @@ def _limits(curve: Curve, studied: StudiedMuscle, last: float) -> Iterator[Row]:
     note = f"of {limit:g}" if limit else "no stretch_limit is given"
     yield Row("share of the rubber's limit", 100 * share, "%", note)
     widest = curve.largest("outer_diameter", last)
-    yield Row("largest outer diameter", widest, "mm", "the space it needs, to free contraction")
+    yield Row("largest outer diameter", widest, "mm", f"the space it needs, to {ends}")
 
 
 def _measures(studied: StudiedMuscle) -> Iterator[Row]:

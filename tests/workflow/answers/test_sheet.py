@@ -132,6 +132,25 @@ def test_the_balance_closes_for_every_muscle_of_the_library(name, folder, monkey
     assert abs(found.value("energy balance")) < 1e-5
 
 
+def test_a_curve_that_ends_before_its_free_contraction_says_how_far_it_goes(study, folder):
+    fine = sheet.solved(study, "dmsp20", 0.3, model="cylinder")
+    short = replace(fine.curve.case.path, stops=stops_to(0.1), zero_force=False)
+    case = replace(fine.curve.case, path=short)
+    found = sheet.sheet(
+        study.muscles["dmsp20"], "dmsp20", "default", case, Store(study).solution(case)
+    )
+    assert math.isnan(found.value("free contraction"))
+    rows = {row.name: row for row in found.rows}
+    for name in ("largest thread force", "largest rubber stretch", "largest outer diameter"):
+        assert rows[name].note.endswith("to 10 %, as far as it goes")
+        assert rows[name].value <= fine.value(name)  # threads bear the most on the way
+    assert rows["largest outer diameter"].value < fine.value("largest outer diameter")
+    assert rows["energy balance"].note.endswith("to 10 %, as far as it goes")
+    assert {row.name: row for row in fine.rows}["largest outer diameter"].note.endswith(
+        "to free contraction"
+    )
+
+
 def test_a_balance_that_does_not_close_is_said(study, folder):
     """With two far stops the cubics between them are not good enough."""
     fine = sheet.solved(study, "dmsp20", 0.3, model="cylinder").curve.case
