@@ -14,7 +14,7 @@ from solver.freefem import Limits
 from solver.record import VARIABLES, unreached, variables
 from solver.solve import solve
 from workflow.answers.sheet import sheet
-from workflow.data import bench, in_time, records
+from workflow.data import bench, in_time, records, reference
 from workflow.data.states import Table
 from workflow.report.explorer import content, page
 
@@ -196,6 +196,37 @@ def test_measured_points_are_beside_their_muscle_only(shown):
     assert "measured" not in shown.inner_text("#plots table")
 
 
+def test_a_map_says_what_it_has_between_its_points(shown, made):
+    """That of Martens 2017 has other pressures and contractions than the curves."""
+    content_of, found = made[2], reference.martens2017()
+    (own,) = (m for m in content_of["measured"] if m["label"] == found.label)
+    assert {row[1] for row in own["between"]["isometric"]} == {0.1}
+    isobaric = own["between"]["isobaric"]
+    assert {row[0] for row in isobaric} == {0.2, 0.3}
+    for pressure in (0.2, 0.3):
+        forces = [row[2] for row in isobaric if row[0] == pressure]
+        at = found.contractions(pressure)
+        assert len(at) == len(forces) > 0
+        np.testing.assert_allclose(forces, found.force(at, pressure), rtol=1e-6)
+    assert f"between what was measured: {found.label}" in shown.inner_text("#plots .marks")
+    (sim,) = (m for m in content_of["measured"] if m["label"] == reference.musclesim().label)
+    assert "isobaric" not in sim["between"]  # it has points there
+    first = min(row[1] for row in isobaric if row[0] == 0.3)
+    shown.focus("#plots .chart")
+    shown.keyboard.press("Home")
+    while float(shown.inner_text("#plots thead th").rpartition("=")[2]) < first - 1e-7:
+        shown.keyboard.press("ArrowRight")
+    assert f"between what was measured: {found.label}, 0.3 MPa" in shown.inner_text("#plots table")
+
+
+def test_claims_are_asked_for_where_the_muscle_is_the_papers(made, tmp_path):
+    _, table, own = made
+    assert own["hasClaims"]
+    text = MUSCLE.replace("wall_thickness: 2", "wall_thickness: 2.1")
+    plan = planned(tmp_path, text + "scenes: {}\n")
+    assert not content.content("mine", [], table, {}, tmp_path, plan.study.muscles)["hasClaims"]
+
+
 def test_another_path_two_muscles_and_a_link_that_says_so(shown, made):
     shown.select_option("#path", "isometric")
     assert "threshold" not in shown.inner_text("#warning")
@@ -319,9 +350,14 @@ scenes:
         tab.check(f"#muscles input[value='{name}']")
         assert name in tab.inner_text("#plots tbody")
         tab.fill("#find", "d1")
+        listed = tab.locator("#muscles input").evaluate_all("boxes => boxes.map(b => b.value)")
         tab.click("#all")
         assert re.search("60 curves are drawn; [0-9]+ more are chosen", tab.inner_text("#warning"))
         assert tab.locator("#plots tbody tr").count() == 60
+        assert tab.locator("#muscles input:checked").count() == len(listed) == 200
+        sought = [found for found in table.muscles.index if "d19" in found]
+        tab.fill("#find", "d19")
+        assert tab.locator("#muscles input").first.input_value() == sought[0]
 
 
 def test_pictures_to_take_away(shown, tmp_path):

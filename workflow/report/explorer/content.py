@@ -19,9 +19,10 @@ from solver.models import MODELS
 from solver.record import IN_TIME, SLEEVED, VARIABLES
 from workflow.answers.sheet import sheet
 from workflow.data import deviation
+from workflow.data.paper import is_normal
 from workflow.data.principal_stress import principal_of_four
 from workflow.data.records import Curve
-from workflow.data.reference import ForceMap
+from workflow.data.reference import SAME, ForceMap
 from workflow.data.states import CONTROLS, OF_MUSCLE, OF_STATE, WITH_ERROR, Table, of_muscle
 from workflow.study.contents import StudiedMuscle
 from workflow.study.errors import StudyError
@@ -99,6 +100,7 @@ def content(
                 "label": found.label,
                 "points": [numbers(row) for row in found.points],
                 "suspect": [numbers(row) for row in found.suspect],
+                "between": _between(found, muscle, table),
             }
             for muscle, its in maps.items()
             if muscle in {each["name"] for each in named}
@@ -110,8 +112,34 @@ def content(
             claim | _about(str(claim.get("figure", "")), figures or {})
             for claim in _rows(tables / "claims.csv", CLAIM)
         ],
+        "hasClaims": muscles is None or any(map(is_normal, muscles.values())),
         "deviations": _deviations(tables / "deviation.csv"),
     }
+
+
+def _between(found: ForceMap, muscle: str, table: Table) -> dict[str, list[list[float | None]]]:
+    """What a map says between its points, where a curve of its muscle is held there, by path.
+
+    Pressure, contraction and force: along a pressure that it does not have at the contractions
+    that it has around it; along a contraction at the pressures at which that was not measured.
+    """
+    own = table.curves[table.curves["muscle"] == muscle]
+    rows: dict[str, list[tuple[float, float]]] = {}
+    for kind, held in sorted(set(zip(own["path"], own["held"].astype(float), strict=True))):
+        if kind == PathKind.ISOBARIC and not _has(found.points[:, 0], held):
+            rows.setdefault(kind, []).extend((held, float(e)) for e in found.contractions(held))
+        if kind == PathKind.ISOMETRIC:
+            there = found.points[np.abs(found.points[:, 1] - held) <= SAME, 0]
+            lacking = [(float(p), held) for p in found.pressures if not _has(there, p)]
+            rows.setdefault(kind, []).extend(lacking)
+    return {
+        kind: [numbers((p, e, f)) for p, e in its if math.isfinite(f := float(found.force(e, p)))]
+        for kind, its in rows.items()
+    }
+
+
+def _has(values: NDArray[np.float64], wanted: float) -> bool:
+    return bool((np.abs(values - wanted) <= SAME).any())
 
 
 def _paths(table: Table, timed: Sequence[Curve]) -> dict[str, dict[str, Any]]:

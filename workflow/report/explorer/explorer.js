@@ -8,6 +8,7 @@ const MOST_CURVES = 60; // that are drawn at a time
 const MOST_MUSCLES = 200; // that are listed at a time
 const SHOWN = new Set(["converged", "unstable"]); // statuses of states that a line goes through
 const MARKS = ["dot", "square", "diamond"]; // of measured points, by their source
+const BETWEEN = "star"; // where a map has no point of its own
 const OF_MAP = { pressure: 0, contraction: 1, force: 2, load: 2 }; // columns of measured points
 const VIRIDIS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 const MOST_SHEETS = 8; // data sheets beside each other
@@ -22,7 +23,8 @@ const element = (name, properties = {}, ...children) => {
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const unique = (values) => [...new Set(values)];
 const digits = (value, count = 6) =>
-  value === null || value === undefined ? "" : String(Number(value.toPrecision(count)));
+  value === null || value === undefined ? ""
+    : value !== 0 && Math.abs(value) < 1e-4 ? Number(value.toPrecision(count)).toExponential() : String(Number(value.toPrecision(count)));
 
 async function unpacked(text) {
   const bytes = Uint8Array.from(atob(text.trim()), (c) => c.charCodeAt(0));
@@ -147,9 +149,9 @@ function measuredOf(muscles, curves) {
       const own = curves.find((c) => c.muscle === m.muscle && c.held === value);
       return {
         label: `${m.label}, ${digits(value)} ${unitOf(DATA.paths[choice.path].held)}`, source: m.label,
-        colour: own ? own.colour : colour("--ink"), points: at(m.points), suspect: at(m.suspect),
+        colour: own ? own.colour : colour("--ink"), points: at(m.points), suspect: at(m.suspect), between: at(m.between[choice.path] ?? []),
       };
-    }).filter((m) => m.points.length || m.suspect.length))
+    }).filter((m) => m.points.length || m.suspect.length || m.between.length))
     .map((m, _, all) => ({ ...m, mark: MARKS[unique(all.map((each) => each.source)).indexOf(m.source) % MARKS.length] }));
 }
 
@@ -175,6 +177,7 @@ function draw(panel, toX, toY, pen) {
   for (const m of panel.measured) {
     for (const p of m.points) pen.mark(m.mark, ...place(p), m.colour);
     for (const p of m.suspect) pen.mark("plus", ...place(p), m.colour);
+    for (const p of m.between) pen.mark(BETWEEN, ...place(p), m.colour);
   }
 }
 
@@ -192,6 +195,7 @@ const SHAPES = { // of marks, within -1 .. 1
   cross: [[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]],
   triangle: [[[0, -1.2], [1.1, 0.8], [-1.1, 0.8], [0, -1.2]]],
   plus: [[[-1, 0], [1, 0]], [[0, -1], [0, 1]]],
+  star: [[[-1, 0], [1, 0]], [[-0.5, -0.87], [0.5, 0.87]], [[-0.5, 0.87], [0.5, -0.87]]],
   diamond: [[[0, -1.1], [1.1, 0], [0, 1.1], [-1.1, 0], [0, -1.1]]],
   square: [[[-0.8, -0.8], [0.8, -0.8], [0.8, 0.8], [-0.8, 0.8], [-0.8, -0.8]]],
 };
@@ -266,7 +270,7 @@ function showCharts() {
 
 function extent(all) {
   const points = all.flatMap((p) => [...p.curves.flatMap((c) => c.points.filter(drawn)),
-    ...p.measured.flatMap((m) => [...m.points, ...m.suspect])]);
+    ...p.measured.flatMap((m) => [...m.points, ...m.suspect, ...m.between])]);
   if (!points.length) return null;
   return ["x", "y"].map((axis) => {
     const values = points.map((p) => p[axis]);
@@ -291,6 +295,7 @@ function marksOf(panel) {
   const found = [
     ...unique(panel.measured.filter((m) => m.points.length).map((m) => m.source))
       .map((source) => [panel.measured.find((m) => m.source === source).mark, `measured: ${source}`]),
+    ...unique(panel.measured.filter((m) => m.between.length).map((m) => m.source)).map((source) => [BETWEEN, `between what was measured: ${source}`]),
     ["plus", "measured, not used", panel.measured.some((m) => m.suspect.length)],
     ["cross", "not valid", points.some((p) => !SHOWN.has(p.status))],
     ["ring", "zero force", points.some((p) => p.zero && SHOWN.has(p.status))],
@@ -330,7 +335,7 @@ function chartOf(panel, range) {
     },
   }, [range[0], range[1]], panel.box);
   const places = inTime() ? panel.curves.flatMap((c) => c.points.filter(drawn).map((p) => p.time))
-    : [...panel.curves.flatMap((c) => c.points.filter(drawn).map((p) => p.x)), ...panel.measured.flatMap((m) => m.points.map((p) => p.x))];
+    : [...panel.curves.flatMap((c) => c.points.filter(drawn).map((p) => p.x)), ...panel.measured.flatMap((m) => [...m.points, ...m.between].map((p) => p.x))];
   panel.xs = unique(places).sort((a, b) => a - b);
   panel.range = range;
   panel.box.onkeydown = (event) => stepByKey(panel, chart, event);
@@ -379,6 +384,7 @@ function read(panel, x) {
   });
   for (const m of inTime() ? [] : panel.measured) {
     for (const p of m.points.filter((p) => Math.abs(p.x - panel.at) < 1e-9)) rows.push(row(["", `measured: ${m.label}`], digits(p.y), "", ""));
+    for (const p of m.between.filter((p) => Math.abs(p.x - panel.at) < 1e-9)) rows.push(row(["", `between what was measured: ${m.label}`], `≈ ${digits(p.y)}`, "", ""));
   }
   const head = row([`${named(inTime() ? "time" : choice.x)} = ${digits(panel.at)}`], named(choice.y), "error", "", "th");
   panel.table.replaceChildren(element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows)));
@@ -468,8 +474,9 @@ function svg() {
     });
     panel.measured.forEach((m, k) => {
       const y = y0 + height + 54 + 16 * (panel.curves.length + k);
-      svgPen(out).mark(m.mark, x0 + 17, y, m.colour);
-      out.push(`<text x="${x0 + 42}" y="${y + 4}">${escaped(`measured: ${m.label}`)}</text>`);
+      const own = m.points.length || m.suspect.length;
+      svgPen(out).mark(m.points.length ? m.mark : own ? "plus" : BETWEEN, x0 + 17, y, m.colour);
+      out.push(`<text x="${x0 + 42}" y="${y + 4}">${escaped(`${own ? "measured" : "between what was measured"}: ${m.label}`)}</text>`);
     });
   });
   return [...out, "</svg>"].join("\n");
@@ -648,9 +655,10 @@ function showVerdicts() {
     parts.push(element("p", { textContent: claims.length ? "Claims of the paper about what is shown:" : "No claim of the paper is about what is shown." }));
     if (claims.length) parts.push(table(["claim", "figure", "paper", "ours", "verdict", "why"],
       claims.map((c) => [`${c.id}: ${c.claim}`, c.figure ?? "", c.paper ?? "", c.ours === null ? "" : `${digits(c.ours, 3)} ${c.unit === "1" ? "" : c.unit}`, c.verdict, c.why ?? ""])));
-  } else {
-    parts.push(element("p", { className: "hint", textContent: "The claims of the paper have not been judged in this folder: snakemake --cores 2 claims does it." }));
+  } else if (DATA.hasClaims) {
+    parts.push(element("p", { className: "hint", textContent: "The claims of the paper have not been judged in this folder: .venv/bin/snakemake --cores 2 claims does it." }));
   }
+  $("compared").hidden = !parts.length;
   $("claims").replaceChildren(...parts);
 }
 
@@ -670,7 +678,7 @@ function showChoices() {
   boxes("variants", unique(curves.map((c) => c.variant)), String);
   const muscles = unique(curves.map((c) => c.muscle));
   const sought = listed();
-  const found = sought.length === muscles.length ? muscles : unique([...muscles.filter((m) => choice.muscles.includes(m)), ...sought]);
+  const found = sought.length === muscles.length ? muscles : unique([...sought, ...muscles.filter((m) => choice.muscles.includes(m))]);
   boxes("muscles", found.slice(0, MOST_MUSCLES), String);
   if (found.length > MOST_MUSCLES) $("muscles").append(element("span", { textContent: `${MOST_MUSCLES} of ${found.length}: Find narrows the list.` }));
   fill("beside", muscles.map((m) => [m, m]), choice.beside);
@@ -713,7 +721,7 @@ function listen() {
   for (const key of ["x", "y", "beside"]) $(key).onchange = () => { choice[key] = $(key).value; show(); };
   for (const key of ["bands", "measured", "compare"]) $(key).onchange = () => { choice[key] = $(key).checked; show(); };
   $("find").oninput = showChoices;
-  $("all").onclick = () => { choice.muscles = unique([...choice.muscles, ...listed()]); show(); };
+  $("all").onclick = () => { choice.muscles = unique([...choice.muscles, ...listed().slice(0, MOST_MUSCLES)]); show(); };
   $("none").onclick = () => { choice.muscles = choice.muscles.slice(0, 1); show(); };
   $("csv").onclick = () => save(new Blob([csv()], { type: "text/csv" }), "csv");
   $("svg").onclick = () => save(new Blob([svg()], { type: "image/svg+xml" }), "svg");
