@@ -36,6 +36,7 @@ from workflow.figures.style import COLUMN_WIDTH, look_of, panels, percent
 from workflow.study.schema import FigureEntry
 
 OF_MAP = {CONTRACTION, PRESSURE, FORCE}  # columns that a force map has
+MOST = 20  # series that are drawn: more can neither be told apart nor be named in a legend
 HELD, PERIOD = "held", "period"  # columns of scenes in time
 MODEL = "model"  # what curves may be told apart by, beside muscle, variant and the held value
 
@@ -68,8 +69,9 @@ def table(data: Any) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """All curves in one pair of axes."""
+    """All curves in one pair of axes; of many series every second or third one, and so on."""
     x, y = table.attrs["x"], table.attrs["y"]
+    table, left_out = _thinned(table)
     figure, axes = panels(COLUMN_WIDTH, 3.3)
     ax = axes[0, 0]
     shown = table[table["status"] != SUSPECT]
@@ -89,8 +91,20 @@ def draw(table: pd.DataFrame) -> Figure:
     text = muscles(table)
     if len(suspect):
         text += " Crosses are points of a map that are not used."
+    text = f"{left_out} {text}"
     curves.note_gaps(figure, shown, [SERIES], x, text.strip(), y=y)
     return figure
+
+
+def _thinned(table: pd.DataFrame) -> tuple[pd.DataFrame, str]:
+    """The rows of MOST series at most, evenly among all, and a sentence that says so."""
+    names = list(table[SERIES].unique())
+    every = -(-len(names) // MOST)
+    kept = names[::every]
+    if every == 1:
+        return table, ""
+    said = f"{len(kept)} of {len(names)} series are drawn; the table of the figure has them all."
+    return table[table[SERIES].isin(kept)], said
 
 
 def _over_time(data: Any, kind: PathKind, columns: set[str]) -> list[pd.DataFrame]:

@@ -207,9 +207,29 @@ def test_one_curve_from_the_shell(plot, tmp_path, capsys):
     assert (tmp_path / "it.png").stat().st_size > 10_000
 
 
+def test_before_the_first_run_the_command_is_said(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    planned(tmp_path)
+    assert main(["plot", "one", "--study", "study.yaml"]) == 1
+    said = capsys.readouterr().err
+    assert "study.yaml: nothing of it is solved yet; .venv/bin/muscle run --study" in said
+
+
+def test_of_many_muscles_some_are_drawn_and_the_table_has_all(scene):
+    table = general.table(scene("curves"))
+    rows = pd.concat([table.assign(**{SERIES: f"muscle {k}"}) for k in range(50)])
+    rows.attrs = table.attrs
+    figure = general.draw(rows)
+    assert any("17 of 50 series are drawn" in " ".join(text.split()) for text in texts(figure))
+    named = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {f"muscle {k}" for k in range(0, 50, 3)} <= set(named)
+    assert "muscle 1" not in named
+
+
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
+        (["one", "--path", "isometric", "--held", "9"], "held 9.0: no isometric curve"),
         (["two"], "muscle two: no curve of it is solved; there are bare, one"),
         (["one", "--held", "0.7"], "held 0.7: no isobaric curve of it is solved; there are 0.2"),
         (["one", "--y", "colour"], "--y colour: no such quantity"),
