@@ -41,11 +41,11 @@ def entries(given: argparse.Namespace, there: Collection[str], what: str) -> lis
     StudyError
         If the study file has no such entry, or none at all.
     """
+    if not there:
+        raise StudyError(f"{given.study}: there is no {what} in it")
     for name in given.names:
         if name not in there:
             raise StudyError(f"{name}: no such {what}\n  allowed: {choices(name, there)}")
-    if not there:
-        raise StudyError(f"{given.study}: there is no {what} in it")
     return given.names or list(there)
 
 

@@ -10,6 +10,7 @@ from workflow.data.states import SceneData
 from workflow.plan.plan import Plan
 from workflow.programs import add_study, settled_plan_of
 from workflow.study.errors import StudyError, choices
+from workflow.study.folders import DEFAULT
 from workflow.study.schema import HELD_KEY, SHOWN, SWEPT_KEY, TIMED, Scene
 
 ENDINGS = (".png", ".svg", ".csv")
@@ -56,9 +57,14 @@ def chosen(plan: Plan, given: argparse.Namespace) -> Chosen:
         for curve in records.curves_of_study(plan, partial=True)
         if not curve.place.scene and curve.solution.status is not CaseStatus.NOT_SOLVED
     ]
+    if not curves:
+        raise StudyError(f"{given.study}: nothing of it is solved yet; {_run(given)} does it")
     path = given.path or next(
         (c.place.group for c in curves if c.place.muscle in given.muscles), ""
     )
+    groups = list(dict.fromkeys(curve.place.group for curve in curves))
+    if path and path not in groups:
+        raise StudyError(f"--path {path}: no such curve is solved; there are {', '.join(groups)}")
     curves = [curve for curve in curves if curve.place.group == path or not path]
     for name, key in (
         ("muscles", "muscle"),
@@ -83,6 +89,12 @@ def chosen(plan: Plan, given: argparse.Namespace) -> Chosen:
     figure = {"x": given.x, "y": given.y, "by": given.by}
     scene = Scene.model_validate({"muscles": given.muscles, "path": path, "figure": figure, **axes})
     return Chosen("plot", plan, curves, scene)
+
+
+def _run(given: argparse.Namespace) -> str:
+    """The command that solves the study."""
+    own = "" if given.study == DEFAULT else f" --study {given.study}"
+    return f".venv/bin/muscle run{own}"
 
 
 def run(given: argparse.Namespace) -> int:

@@ -1,8 +1,10 @@
 """Say what is understood of a file of measured forces: columns, units, set pressures, loops."""
 
 import argparse
+import math
 
 from workflow.data import bench
+from workflow.study.errors import StudyError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -13,6 +15,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Print it."""
+    if not 0 < given.length < math.inf:
+        raise StudyError(f"--length {given.length:g}: no length of a muscle\n  allowed: > 0 (mm)")
     found = bench.read(given.file, given.length)
     if isinstance(found, bench.Bench):
         for line in found.said:
