@@ -1,14 +1,14 @@
 """The programs of the workflow: ``muscle PROGRAM``, or ``python -m workflow PROGRAM``.
 
-People call run, explain, list, check and retry; every rule of Snakemake calls one of the others, or
-those of geometry and solver. Whatever is wrong with the input ends with status 1 and a message of a
-few lines.
+Those that people seldom call stand last: rules of Snakemake call them, or they take over results
+into the sources. Whatever is wrong with the input ends with status 1 and a message of a few lines.
 """
 
 import argparse
 import ast
 import os
 import resource
+import select
 import signal
 import sys
 from importlib import import_module
@@ -18,6 +18,11 @@ from workflow.study.errors import StudyError
 
 FOLDER = Path(__file__).parent / "programs"
 INTERRUPTED = 128 + signal.SIGINT  # exit status, as a shell gives it
+CUT_OFF = 128 + signal.SIGPIPE
+OF_RULES = {  # programs that people seldom call
+    *("analysis", "benchmark", "draw", "failures", "gather", "page", "sheets", "solve"),
+    *("likeness", "mesh-errors", "numbers", "weigh"),
+}
 NO_PROGRAMS = ("__init__", "case_options")  # what programs share
 
 
@@ -33,14 +38,28 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog=f"muscle {name}", description=program.__doc__)
     program.add_arguments(parser)
     try:
-        return int(program.run(parser.parse_args(given[1:])))
+        status = int(program.run(parser.parse_args(given[1:])))
+        sys.stdout.flush()
+        return status
     except (StudyError, OSError) as error:
+        if isinstance(error, BrokenPipeError) and _nobody_reads():
+            return CUT_OFF
         print(error, file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return INTERRUPTED
     finally:
         _note(name)
+
+
+def _nobody_reads() -> bool:
+    """Whether who reads the output, as ``head``, has had enough; what is left of it is dropped."""
+    output = select.poll()
+    output.register(sys.stdout.fileno(), 0)
+    gone = any(event & select.POLLERR for _, event in output.poll(0))
+    if gone:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return gone
 
 
 def _note(name: str) -> None:
@@ -66,7 +85,7 @@ def _parser() -> argparse.ArgumentParser:
     """What answers to --help and to a name that is none."""
     parser = argparse.ArgumentParser(prog="muscle", description=__doc__)
     programs = parser.add_subparsers(required=True, metavar="PROGRAM")
-    for name in names():
+    for name in sorted(names(), key=lambda name: name in OF_RULES):
         text = ast.get_docstring(ast.parse((FOLDER / f"{_module(name)}.py").read_bytes())) or ""
         programs.add_parser(name, help=text.partition("\n")[0])
     return parser

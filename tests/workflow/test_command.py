@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from workflow.__main__ import main, names
+from workflow.__main__ import OF_RULES, main, names
 from workflow.programs import run
 
 ROOT = Path(__file__).parents[2]
@@ -69,12 +69,29 @@ def test_it_runs_a_study_in_another_folder(muscle):
     assert "Drawing fig04" in done.stdout + done.stderr
 
 
+def test_who_reads_a_part_only_is_no_error(muscle, tmp_path):
+    program = tmp_path / "checkout/.venv/bin/muscle"
+    done = subprocess.run(
+        ["bash", "-c", f"{program} list --study {SMOKE} | head -1; echo ${{PIPESTATUS[0]}}"],
+        cwd=tmp_path / "mine",
+        capture_output=True,
+        text=True,
+        check=True,
+        env={"PATH": "/usr/bin:/bin"},
+    )
+    assert done.stdout.splitlines()[0] == "muscles"
+    assert done.stdout.splitlines()[1] in {"0", "141"}
+    assert done.stderr == ""
+
+
 def test_help_names_every_program(capsys):
     with pytest.raises(SystemExit) as ended:
         main(["--help"])
     assert ended.value.code == 0
     said = capsys.readouterr().out
     assert all(f"\n    {name}" in said for name in names())
+    assert said.index("\n    sheet ") < said.index("\n    analysis ")
+    assert set(names()) >= OF_RULES
     assert {"run", "explain", "check", "retry", "list"} <= set(names()) | {"check"}
 
 

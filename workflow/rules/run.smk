@@ -136,7 +136,7 @@ onstart:
 
 
 onsuccess:
-    PROGRESS.pop().close()
+    PROGRESS.pop().close(f"Results are in {RESULTS}; open {RESULTS / 'explorer.html'} in a browser")
 
 
 onerror:

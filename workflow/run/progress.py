@@ -153,14 +153,16 @@ class Progress(logging.Handler):
         self._say(why)
         self.terminal = None
 
-    def close(self) -> None:
-        """Say how it ended."""
+    def close(self, said: str = "") -> None:
+        """Say how it ended, and in the terminal what else there is to say."""
         if not self.ended.is_set():
             self.ended.set()
             self.running.clear()
             self.batches.clear()
             self._say(self.line())
             self.log.close()
+            if said and self.terminal:
+                print(said, file=self.terminal)
         super().close()
 
     def _tick(self) -> None:
