@@ -1,5 +1,7 @@
 """Cycles and vibrations of the solid: against cylinder and membrane, limits, balance, fields."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -16,6 +18,7 @@ from solver.rubber.yeoh.law import Yeoh
 FLAT = Memory.flat(0.06, 1e-3, 1e3)
 LONG = Numerics(section=SectionMesh(cap_step=10, body_step=20, growth=2))  # nothing changes along Z
 COARSE = Numerics(section=SectionMesh(cap_step=2, body_step=10, growth=2))
+FINE_WALL = Numerics(section=replace(LONG.section, rows=(2, 2, 4)))
 TUBE = {"effects": Effects(end="sliding", volume="incompressible"), "numerics": LONG}
 
 
@@ -120,6 +123,20 @@ def test_fields_on_both_branches(make_case, solve_case):
     assert 1e-4 < np.max(np.abs(there["corners"][:, 2] - back["corners"][:, 2])) < 0.5
     hoop = [fields["stress"][:, 3] for fields in (there, back)]
     assert 1e-3 < np.median(np.abs(hoop[0] - hoop[1])) < 0.1
+
+
+def test_the_stress_of_the_branches_is_in_the_fields(make_case, solve_case):
+    """On both ways the radial stress of a tube is the pressure inside, and none outside."""
+    given = cycles(8) | {"fields_at": (0.1,)}
+    solution = solve_case(make_case(**(given | TUBE | {"numerics": FINE_WALL})))
+    hoop = []
+    for stop in (2, 6):
+        corners, stress = (solution.fields[stop][name] for name in ("corners", "stress"))
+        inside, outside = (np.isclose(corners[:, 0], radius) for radius in (10, 12))
+        assert np.mean(stress[inside, 0]) == pytest.approx(-0.3, abs=2e-4)
+        assert np.mean(stress[outside, 0]) == pytest.approx(0, abs=2e-4)
+        hoop.append(np.mean(stress[inside, 3]))
+    assert hoop[0] - hoop[1] > 0.02
 
 
 def test_a_mass_on_a_valve(make_case, solve_case):
