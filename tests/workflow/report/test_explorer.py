@@ -404,3 +404,30 @@ def test_it_is_readable_in_the_dark_and_on_a_phone(browser, made, look):
     ground = tab.evaluate("getComputedStyle(document.body).backgroundColor")
     assert (ground == "rgb(255, 255, 255)") == (look != "dark")
     context.close()
+
+
+def luminance(colour):
+    """Relative luminance of a colour as #rrggbb (WCAG 2.2)."""
+    parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+    linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
+    return float(np.dot([0.2126, 0.7152, 0.0722], linear))
+
+
+def contrast(one, other):
+    low, high = sorted(map(luminance, (one, other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+def test_curves_and_text_stand_out_in_light_and_dark():
+    """WCAG 2.2: 3 to 1 for what is drawn, 4.5 to 1 for text."""
+    script, style = ((page.HERE / f"explorer.{end}").read_text() for end in ("js", "css"))
+    curves = re.findall("#[0-9a-f]{6}", re.search(r"const COLOURS = \[(.*?)\]", script)[1])
+    assert len(curves) > 5
+    schemes = re.findall(
+        r"--ground: (#\w+); --ink: (#\w+); --soft: (#\w+);.*?--panel: (#\w+)", style
+    )
+    assert len(schemes) == 2
+    for ground, *text, panel in schemes:
+        ground = "#ffffff" if ground == "#fff" else ground
+        assert min(contrast(curve, ground) for curve in curves) >= 3
+        assert min(contrast(each, behind) for each in text for behind in (ground, panel)) >= 4.5

@@ -2,7 +2,7 @@
 // The explorer: choices on the left, charts, wall, muscles and verdicts on the right. All it shows
 // is in one object, written by content.py; the choice is an object too, and stands in the address.
 
-const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8860b", "#56b4e9", "#8a6fd1", "#7f7f7f"];
+const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8860b", "#2f93cf", "#8a6fd1", "#7f7f7f"];
 const DASHES = [[], [9, 4], [2, 3], [9, 3, 2, 3], [14, 4], [5, 2]];
 const MOST_CURVES = 60; // that are drawn at a time
 const MOST_MUSCLES = 200; // that are listed at a time
