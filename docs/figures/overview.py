@@ -29,7 +29,7 @@ def main() -> None:
         axes.set_title(title, loc="left", fontweight="bold", fontsize=10)
         axes.axis("off")
     curves(figure.add_subplot(grid[:, 1]))
-    figure.subplots_adjust(0.01, 0.11, 0.99, 0.93, wspace=0.14, hspace=0.2)
+    figure.subplots_adjust(0.01, 0.11, 0.95, 0.93, wspace=0.14, hspace=0.2)
     figure.savefig(Path(__file__).with_suffix(".png"))
 
 
@@ -44,7 +44,8 @@ def curves(axes: plt.Axes) -> None:
         points = rows[(rows["source"] == "festo_musclesim") & (rows["status"] == "reference")]
         points = points[(points["point"] == "tabulated") & (points["contraction [1]"] >= 0)]
         axes.plot(100 * points["contraction [1]"], points["force [N]"], "o", color=colour)
-        axes.annotate(f"{pressure:g} MPa", (0.3, line["force [N]"].iloc[0] + 12), color=colour)
+        end = (25.4, line["force [N]"].iloc[-1])  # of Eq. (1), the last of both
+        axes.annotate(f"{pressure:g} MPa", end, color=colour, va="center", annotation_clip=False)
     axes.set_title("force: solid, Eq. (1) dashed, the maker's points", loc="left")
     axes.title.set(fontsize=10, fontweight="bold")
     axes.set_xlabel("contraction [%]")
