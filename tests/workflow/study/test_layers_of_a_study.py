@@ -111,7 +111,7 @@ def test_collar_of_a_sleeve(planned):
 EMBEDDED = "{kind: embedded, depth: 0.3, sense: clockwise, lead: 144, threads: 60}"
 REFUSED = [
     # (layers, key named, what is said)
-    ("[]", "layers", "at least 1"),
+    ("[]", "layers", "allowed: at least 1 item"),
     ("[{depth: 1}]", "layers.0.kind", "must be given"),
     ("[{kind: woven}]", "layers.0.kind", "embedded, sleeve"),
     ("[{kind: sleeve, depth: 1}]", "layers.0.depth", "not used by kind: sleeve"),
