@@ -249,7 +249,7 @@ class Source:
             return self.refuse(keys, None, "this key must be given")
         if error["type"] in ("model_type", "dict_type"):
             allowed = "a mapping, key: value"
-        if error["type"] in ("too_short", "too_long"):  # List should have ... after validation, not 0
+        if error["type"] in ("too_short", "too_long"):  # "... have X after validation"
             allowed = allowed.split(" have ")[-1].split(" after ")[0]
         if error["input"] is None:
             text = f"{self.place(keys)} = None is refused\n  allowed: {allowed}"
