@@ -12,7 +12,7 @@ from geometry.refusal import Refusal
 from solver import record
 from workflow.answers.design import result
 from workflow.answers.design.problem import Problem, cover
-from workflow.answers.design.search import MISSED, looked_for
+from workflow.answers.design.search import MISSED, Found, Trial, looked_for
 from workflow.answers.store import Store
 from workflow.plan.plan import read
 from workflow.study.errors import StudyError
@@ -144,6 +144,22 @@ def test_what_stands_in_the_way_is_named(study):
     assert "no muscle meets all requirements" in said
     assert "without pull (force at 10 %, 0.3 MPa: at least 900 N" in said
     assert "muscles:" not in result.texts("contrary", [found])
+
+
+@pytest.mark.parametrize(("thinnest", "muscles"), [(12.0, 1), (14.0, 5)])
+def test_objectives_that_agree_have_one_muscle(tmp_path, monkeypatch, thinnest, muscles):
+    """Five equal muscles would say nothing; of others there are three between the ends."""
+    text = SMALL.replace("minimise: air", "minimise: [air, outer_diameter]", 1)
+    (tmp_path / "study.yaml").write_text(text)
+
+    def looked_for(problem, store, weight):
+        x = np.array([thinnest if weight == (0.0, 1.0) else 12.0])
+        return Found(problem, weight, best=Trial(x, problem.cheap(x), 0.0, 0.0))
+
+    monkeypatch.setattr(result, "looked_for", looked_for)
+    found = result.designed(load(tmp_path / "study.yaml"), "small")
+    assert len(found) == muscles
+    assert ("nothing to trade" in "\n".join(result.report(found[0]))) == (muscles == 1)
 
 
 def test_a_reserve_is_on_what_must_be_at_least(tmp_path):

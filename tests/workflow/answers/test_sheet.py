@@ -151,6 +151,23 @@ def test_a_curve_that_ends_before_its_free_contraction_says_how_far_it_goes(stud
     )
 
 
+@pytest.mark.parametrize(
+    "rubber",
+    [
+        "{law: ogden, convention: textbook, mu: [0.6, 0.02], alpha: [1.5, 5]}",
+        "{law: gent, mu: 0.8, jm: 40}",
+    ],
+)
+@pytest.mark.parametrize("model", ["cylinder", "membrane"])
+def test_the_balance_closes_with_other_laws(rubber, model, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = STUDY.replace("materials: {", f"materials: {{other: {rubber}, ")
+    text = text.replace("  built_in:", "  other: {base: dmsp20, material: other}\n  built_in:")
+    Path("study.yaml").write_text(text)
+    found = sheet.solved(load("study.yaml"), "other", 0.3, model=model)
+    assert abs(found.value("energy balance")) < 1e-5
+
+
 def test_a_balance_that_does_not_close_is_said(study, folder):
     """With two far stops the cubics between them are not good enough."""
     fine = sheet.solved(study, "dmsp20", 0.3, model="cylinder").curve.case

@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +26,18 @@ SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)  # of the first of two objectives
 
 
 def designed(study: Study, name: str) -> list[Found]:
-    """What a design gives; one result, or of two objectives one for each of their weights."""
+    """What a design gives; one result, or of two objectives one for each of their weights.
+
+    Of two that have the same optimum it is one too.
+    """
     problem, store = Problem(study, name), Store(study)
     if len(problem.objectives) == 1:
         return [looked_for(problem, store)]
     first, last = (looked_for(problem, store, weight) for weight in ((1.0, 0.0), (0.0, 1.0)))
     if first.best is None or last.best is None:
         return [first if first.best is None else last]
+    if np.array_equal(first.best.x, last.best.x):
+        return [replace(first, agreed=True)]  # there is nothing between them
     sizes = [
         abs(found.best.measures[measure]) or 1.0
         for found, measure in zip((first, last), problem.objectives, strict=True)
@@ -85,6 +91,8 @@ def report(found: Found) -> list[str]:
     lines += [
         f"  {problem.text_of(measure, best.measures[measure])}" for measure in problem.objectives
     ]
+    if found.agreed:
+        lines.append("  no other muscle is better by either objective: there is nothing to trade")
     for requirement in problem.requirements:
         value = best.measures[requirement.measure]
         decides = "  <- decides" if requirement.violation(best.measures) > -ACTIVE else ""

@@ -69,6 +69,7 @@ class Found:
     missed : where none can, the smallest sets of requirements that stand in the way, by how much
     flat : between which values a number may go for one per cent of the objective
     states, solves : of the cylinder; of the solid, that were not in the store
+    agreed : whether two objectives have this one optimum
     """
 
     problem: Problem
@@ -79,6 +80,7 @@ class Found:
     flat: dict[str, tuple[float, float]] = field(default_factory=dict)
     states: int = 0
     solves: int = 0
+    agreed: bool = False
 
 
 class Search:
