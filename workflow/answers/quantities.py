@@ -110,6 +110,12 @@ def _examples(kind: str) -> str:
     return EXAMPLES[kind] if kind else ", ".join(f"{EXAMPLES[k]} ({k})" for k in KINDS)
 
 
+def is_fraction(text: str) -> bool:
+    """Whether it is a number without a unit that can be a contraction: 0.12."""
+    found = WRITTEN.fullmatch(text)
+    return bool(found and not found[2] and abs(Decimal(found[1])) <= LARGEST)
+
+
 def split(words: list[str]) -> list[str]:
     """Words of a command line, those of one quantity joined: ``0.25 MPa`` is one."""
     found: list[str] = []

@@ -2,8 +2,8 @@
 
 As ``muscle ask dmsp20 0.25MPa 12%``, ``muscle ask dmsp20 5kg 30mm``, or with --pressure,
 --contraction (or --stroke) and --force (or --load). A mass is the load that hangs from the muscle,
-a length how much shorter it gets. The record of the answer is kept in results/cases; asked again,
-nothing is solved.
+a length how much shorter it gets; beside a pressure 0.12 is 12%. The record of the answer is kept
+in results/cases; asked again, nothing is solved.
 """
 
 import argparse
@@ -54,8 +54,12 @@ def run(given: argparse.Namespace) -> int:
     study = with_muscle(given.study, given.muscle)
     asked = {kind: getattr(given, kind) for kind in quantities.KINDS}
     length = study.muscles[given.muscle].muscle.length
-    for text in quantities.split(given.quantities):
-        kind, _ = quantities.read(text, length)
+    words = quantities.split(given.quantities)
+    for text in sorted(words, key=quantities.is_fraction):  # beside a pressure it has one meaning
+        if asked[quantities.PRESSURE] is not None and quantities.is_fraction(text):
+            kind = quantities.CONTRACTION
+        else:
+            kind, _ = quantities.read(text, length)
         if asked[kind] is not None:
             raise StudyError(f"{text}: there is a {kind} already, {asked[kind]}")
         asked[kind] = text

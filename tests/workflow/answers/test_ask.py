@@ -174,6 +174,17 @@ def test_the_command_prints_text_and_json(folder, monkeypatch, capsys):
     assert "there is a pressure already" in capsys.readouterr().err
 
 
+def test_a_fraction_beside_a_pressure_is_a_contraction(folder, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
+    more = ["--model", "cylinder", "--study", str(STUDY)]
+    for words in (["250kPa", "0.12"], ["0.12", "2.5", "bar"], ["0.12", "--pressure", "0.25"]):
+        assert main(["ask", "dmsp20", *words, *more]) == 0
+        assert capsys.readouterr().out.startswith("dmsp20 at 0.25 MPa, 12 %")
+    for words in (["50N", "0.12"], ["0.25", "0.12"], ["0.25MPa", "12"]):
+        assert main(["ask", "dmsp20", *words, *more]) == 1
+        assert "has no unit" in capsys.readouterr().err
+
+
 def test_nothing_that_is_slow_to_import_is_imported(folder):
     """The first answer comes within two seconds: no SciPy, no pandas, no pint."""
     program = (
