@@ -231,6 +231,19 @@ def test_solid(solve_case, make_case, name, pressure, forces):
     assert solution.states["force_midplane"] == pytest.approx(solution.states["force"], abs=1e-3)
 
 
+def test_a_thin_muscle_by_models_with_ends(solve_case, make_case):
+    """S3, a tenth as wide as others: membrane and solid are as near each other as of those."""
+    found = {
+        model: solve_case(make_case(model=model, path=isobaric(0.3), numerics=numerics, **S3))
+        for model, numerics in (("membrane", FINE), ("solid", SOLID))
+    }
+    forces = {model: solution.states["force"] for model, solution in found.items()}
+    assert forces["membrane"] == pytest.approx(forces["solid"], abs=3e-3 * 17.0)
+    uniform = UNIFORM[-1][2]
+    assert forces["solid"] == pytest.approx(uniform, abs=0.03 * 17.0)
+    assert (forces["solid"] < uniform).all()
+
+
 def test_sleeve_of_two_layers_is_one_of_both_families(make_case, solve_case):
     two = {**S1, "muscle": sleeved(6.35, senses=(1, -1))}
     for model in ("cylinder", "membrane"):
