@@ -3,8 +3,10 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -74,6 +76,14 @@ def draw(table):
 '''
 
 
+def end(process):
+    """End a run that has not ended, with all of its group; what has is let alone."""
+    if process.poll() is None:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+
 class Project:
     """A copy of the project."""
 
@@ -81,7 +91,7 @@ class Project:
         self.folder = folder
         folder.mkdir(parents=True)
         for part in PARTS:
-            ignored = shutil.ignore_patterns("fig[0-9]*", "__pycache__")
+            ignored = shutil.ignore_patterns("fig[0-9]*")  # what is compiled comes along
             source = ROOT / part
             if source.is_dir():
                 shutil.copytree(source, folder / part, ignore=ignored)
@@ -99,7 +109,7 @@ class Project:
 
     def copy(self, folder):
         """A project in the same state, as far as Snakemake can tell."""
-        shutil.copytree(self.folder, folder, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(self.folder, folder)
         return Project.at(folder)
 
     @classmethod
@@ -141,7 +151,10 @@ class Project:
     def run(self, *arguments, **options):
         """Exit status and output."""
         process = self.start(*arguments, **options)
-        output, _ = process.communicate(timeout=300)
+        try:
+            output, _ = process.communicate(timeout=300)
+        finally:
+            end(process)
         return process.returncode, output
 
     def planned(self):

@@ -15,7 +15,7 @@ import yaml
 from geometry.files import HOST
 from workflow.run import lock
 
-from .project import ROOT, Project
+from .project import ROOT, Project, end
 from .slurm import NODES, Cluster, install
 from .test_faults import fake
 
@@ -61,10 +61,18 @@ def cluster(tmp_path_factory):
 
 @pytest.fixture
 def on_cluster(project, cluster, tmp_path):
-    """A project in which nothing has run yet."""
-    copy = project.copy(tmp_path / "project")
+    """A project in which nothing has run yet; no run of it outlives the test."""
+    copy, runs = project.copy(tmp_path / "project"), []
     copy.clear()
-    return copy
+
+    def start(*arguments, **options):
+        runs.append(Project.start(copy, *arguments, **options))
+        return runs[-1]
+
+    copy.start = start
+    yield copy
+    for run in runs:
+        end(run)
 
 
 def test_killed_cancelled_and_resumed_the_bytes_are_those_of_one_machine(
