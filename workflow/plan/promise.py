@@ -219,8 +219,10 @@ class _Climb:
         return int((~good).sum())
 
     def _measured(self, name: str, better: str) -> Verdict | None:
-        """By a better rung; None if the two were not compared."""
+        """By a better rung; None if the two were not compared, or that has lost states itself."""
         case, count = self.asked.rungs[name], 0
+        if better in self.solved and self._lost(better):
+            return None
         if name in self.solved and better in self.solved:
             pair = self.solved[name], self.solved[better]
             off = max((difference(case, *pair, each) for each in self.asked.judged), key=_worse)

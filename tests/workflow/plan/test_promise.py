@@ -202,6 +202,14 @@ def test_a_coarser_mesh_that_has_lost_states_says_nothing_of_a_finer_one(meshes,
     assert (end.rung, end.holds, end.by) == ("solid", True, "estimated from 99 like muscles")
 
 
+def test_a_rung_that_has_lost_states_proves_no_other(meshes, monkeypatch):
+    guessed(monkeypatch)
+    solver = Solver(meshes, lost=("solid",))
+    end = kept(meshes, solver, 0.01)
+    assert [name for name, _ in solver.asked][:2] == ["solid, coarser", "solid"]
+    assert not end.verdicts["solid, coarser"].by.startswith("measured here by solid at")
+
+
 def test_the_best_there_is_is_no_promise_kept(meshes, monkeypatch):
     guessed(monkeypatch)
     solver = Solver(meshes, solid_coarser=0.9, solid=0.3)
@@ -228,7 +236,7 @@ def test_the_finest_mesh_may_lose_what_a_coarser_one_has(meshes, monkeypatch):
     guessed(monkeypatch, cylinder=0.1, membrane=0.03, solid_coarser=0.02, solid_finer=1e-4)
     solver = Solver(meshes, lost=("solid, finer",), solid_coarser=0.004)
     end = kept(meshes, solver, 0.01)
-    assert (end.rung, end.holds) == ("solid, coarser", True)
+    assert (end.rung, end.holds, end.by) == ("solid", True, "measured here by solid, coarser")
     assert end.verdicts["solid, finer"].error == inf
 
 
