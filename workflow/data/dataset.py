@@ -53,12 +53,14 @@ def build(
     study: str = "",
     effects: bool = False,
     others: Mapping[str, xr.Dataset] | None = None,
+    table: Table | None = None,
 ) -> xr.DataTree:
     """The tree of some curves and of ``others``, further groups by name.
 
-    With ``effects`` also what is known of leaving effects out; ``study`` is its name.
+    ``table`` is that of the curves, where it is there. With ``effects`` also what is known of
+    leaving effects out; ``study`` is its name.
     """
-    table = Table.of(curves, muscles)
+    table = Table.of(curves, muscles) if table is None else table
     groups = {**(others or {})}
     if maps := bench.of_muscles(muscles):
         by_name = {name: found for own in maps.values() for name, found in own.items()}

@@ -171,17 +171,17 @@ def mesh_errors(case: Case, solution: Solution, rung: str, quantity: str) -> tup
         return np.full(count, nan), 0
     law = _state_law(rung, quantity)
     groups, kind = likeness.groups(case), str(case.path.kind)
-    rows = [groups | likeness.of_state(case, solution, k) for k in range(count)]
-    known = np.array([_is_like_state(row, rung) for row in rows])
+    states = likeness.of_states(case, solution)
+    known = _are_like(states, rung) & np.isfinite(list(groups.values())).all()
     found = np.full(count, nan)
     if known.any():
-        features = np.array(
-            [_state_features(r, kind) for r, k in zip(rows, known, strict=True) if k]
-        )
+        of_curve = _features(groups, kind)
+        at = [{name: float(v[k]) for name, v in states.items()} for k in np.flatnonzero(known)]
+        features = np.array([_state_features(of_curve, groups | each, kind) for each in at])
         value, wider = law.at(features, kind)
         errors = np.exp(np.minimum(value + wider * law.quantile(OF_STATES), MOST))
         found[known] = _up_to(errors, case, rung, quantity)
-    return found, len({row["curve"] for row in table})
+    return found, _count(rung)
 
 
 def _up_to(errors: Array, case: Case, rung: str, quantity: str) -> Array:
@@ -233,13 +233,19 @@ def _is_like(case: Case) -> bool:
     return True
 
 
-def _is_like_state(row: Mapping[str, float], rung: str) -> bool:
-    """Whether a state is among those of the table, or hardly beyond."""
-    inside = (
-        low - BEYOND * (high - low) <= row[name] <= high + BEYOND * (high - low)
-        for name, (low, high) in _state_ranges(rung).items()
-    )
-    return all(np.isfinite(list(row.values()))) and all(inside)
+def _are_like(states: Mapping[str, Array], rung: str) -> NDArray[np.bool_]:
+    """Which states are among those of the table, or hardly beyond."""
+    found = np.isfinite(list(states.values())).all(0)
+    for name, (low, high) in _state_ranges(rung).items():
+        more = BEYOND * (high - low)
+        found &= (low - more <= states[name]) & (states[name] <= high + more)
+    return np.asarray(found)
+
+
+@cache
+def _count(rung: str) -> int:
+    """Curves by a rung of which there are states in the table."""
+    return len({row["curve"] for row in _states()[rung]})
 
 
 @cache
@@ -263,12 +269,12 @@ def _features(groups: Mapping[str, float], kind: str) -> Array:
     return np.array([*found, isometric, isotonic, *more, *own])
 
 
-def _state_features(row: Mapping[str, float], kind: str) -> Array:
+def _state_features(of_curve: Array, row: Mapping[str, float], kind: str) -> Array:
     own = [row[name] for name in OF_STATE]
     ratio = row["at"] / row["pressure"]
     own += [row["pull"] ** 2, row["contraction"] ** 2, ratio, row["contraction"] * row["angle"]]
     isometric = [float(kind == "isometric") * value for value in own]
-    return np.concatenate([_features(row, kind), own, isometric])
+    return np.concatenate([of_curve, own, isometric])
 
 
 def _leverage(x: Array, inverse: Array) -> Array:
@@ -311,7 +317,8 @@ def _law(rung: str, quantity: str) -> Law:
 @cache
 def _state_law(rung: str, quantity: str) -> Law:
     rows = [r for r in _states()[rung] if float(r[quantity] or nan) >= 0]
-    features = np.array([_state_features(_numbers(row), row["path"]) for row in rows])
+    found = ((_numbers(row), row["path"]) for row in rows)
+    features = np.array([_state_features(_features(row, k), row, k) for row, k in found])
     errors = np.array([float(row[quantity]) for row in rows])
     blocks, kinds = (np.array([row[name] for row in rows]) for name in ("curve", "path"))
     return Law.fit(features, errors, blocks, kinds)

@@ -14,7 +14,7 @@ from solver.load_path import PathKind
 from solver.record import Solution
 from workflow.plan.judged import FOLLOWS, QUANTITIES, is_valid, scale, variable_of
 
-__all__ = ["FOLLOWS", "QUANTITIES", "groups", "of_state", "share"]
+__all__ = ["FOLLOWS", "QUANTITIES", "groups", "of_states", "share"]
 
 
 def groups(case: Case) -> dict[str, float]:
@@ -58,8 +58,8 @@ def groups(case: Case) -> dict[str, float]:
     }
 
 
-def of_state(case: Case, solution: Solution, state: int) -> dict[str, float]:
-    """Of a state.
+def of_states(case: Case, solution: Solution) -> dict[str, NDArray[np.float64]]:
+    """Of all states of a curve.
 
     contraction; at : its pressure, of the initial shear modulus; pull : its force, of p pi D^2 / 4
     at the largest pressure of the path
@@ -68,9 +68,9 @@ def of_state(case: Case, solution: Solution, state: int) -> dict[str, float]:
     top = groups(case)["pressure"] * case.rubber.shear_modulus
     area = pi * case.muscle.inner_diameter**2 / 4
     return {
-        "contraction": float(found["contraction"][state]),
-        "at": float(found["pressure"][state]) / case.rubber.shear_modulus,
-        "pull": float(found["force"][state]) / (top * area),
+        "contraction": found["contraction"],
+        "at": found["pressure"] / case.rubber.shear_modulus,
+        "pull": found["force"] / (top * area),
     }
 
 

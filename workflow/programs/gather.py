@@ -27,12 +27,12 @@ def run(given: argparse.Namespace) -> int:
     results = results_of(given)
     tables = results / "tables"
     muscles, study = plan.study.muscles, given.study.name
+    table = Table.of(curves, muscles)
     with additions.alone(results):
         groups = [name for name, each in ANALYSES.items() if each.in_dataset]
         others = additions.found(groups, tables)
-        tree = dataset.build(curves, muscles, study=study, effects=True, others=others)
+        tree = dataset.build(curves, muscles, study=study, effects=True, others=others, table=table)
         dataset.write(tree, results / dataset.FILE)
-    table = Table.of(curves, muscles)
     tidy.write(table, results / tidy.FILE)
     solved = {curve.key: curve.solution for curve in curves}
     with additions.alone(tables):

@@ -25,9 +25,9 @@ def run(given: argparse.Namespace) -> int:
     solutions = {curve.key: curve.solution for curve in curves}
     missing = sum(found.status is CaseStatus.NOT_SOLVED for found in solutions.values())
     muscles, study = plan.study.muscles, given.study.name
-    tree = dataset.build(curves, muscles, study=study, effects=True)
-    dataset.write(tree, folder / "dataset.nc")
     table = Table.of(curves, muscles)
+    tree = dataset.build(curves, muscles, study=study, effects=True, table=table)
+    dataset.write(tree, folder / "dataset.nc")
     tidy.write(table, folder / "states.parquet")
     failures.write(plan, solutions, folder / failures.TABLE)
     page.make(plan, f"{study}, unfinished", curves, table, folder)

@@ -90,13 +90,14 @@ def of_states(setups: Mapping[str, Solved]) -> list[dict[str, Any]]:
         case, solution = setups[name].asked.case, setups[name].solution
         exact = truth[case.model]
         common = is_valid(exact) & is_valid(solution)
+        groups = likeness.of_states(case, solution)
         for state in np.flatnonzero(common):
             found.append(
                 {
                     "curve": int(setups[name].asked.tags["curve"]),
                     "rung": name,
                     "state": int(state),
-                    **likeness.of_state(case, solution, int(state)),
+                    **{group: float(values[state]) for group, values in groups.items()},
                     **{
                         quantity: likeness.share(case, solution, exact, quantity)[state]
                         for quantity in (likeness.FOLLOWS, *QUANTITIES)
