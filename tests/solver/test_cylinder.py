@@ -11,7 +11,7 @@ from geometry.muscle import Muscle
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.material import Thread
-from solver.models.cylinder.direct import direct
+from solver.models.cylinder.direct import between, direct
 from solver.models.cylinder.mechanics import Cylinder
 from solver.models.cylinder.observe import observed
 
@@ -177,3 +177,17 @@ def test_no_radius_holds_a_pressure_that_bursts_the_tube(make_case, bare_tube):
     cylinder = Cylinder(make_case(model="cylinder", muscle=bare_tube))
     assert direct(cylinder, 0.05, 0.1) is not None
     assert direct(cylinder, 5.0, 0.1) is None
+
+
+def test_a_root_is_found_in_few_steps():
+    """Of its order, 1.44: each step has more than twice as many digits as the last but one."""
+    asked = []
+
+    def off(x: float) -> float:
+        asked.append(x)
+        return x**3 + np.exp(x) - 40
+
+    found = between(off, 0.0, 5.0)
+    assert off(found) == pytest.approx(0, abs=1e-13)
+    assert len(asked) <= 20
+    assert between(lambda x: x, 0.0, 1.0) == 0

@@ -50,16 +50,20 @@ def between(off: Callable[[float], float], low: float, high: float) -> float:
     SciPy has better ones, which take half a second to import.
     """
     below, above = off(low), off(high)
-    x = low if not below else high
+    x, moved = low if not below else high, 0
     for _ in range(ROUNDS):
         if not below or not above or abs(high - low) <= EXACT * abs(high):
             break
-        x = (low * above - high * below) / (above - below)
+        last, x = x, (low * above - high * below) / (above - below)
+        if abs(x - last) <= EXACT * abs(x):  # one end may be exact and never moved
+            break
         value = off(x)
-        if value * above > 0:
-            high, above, below = x, value, below / 2
+        if value * above > 0:  # an end that stays twice weighs half
+            high, above, below = x, value, below / (2 if moved == 1 else 1)
+            moved = 1
         elif value * below > 0:
-            low, below, above = x, value, above / 2
+            low, below, above = x, value, above / (2 if moved == -1 else 1)
+            moved = -1
         else:
             break
     return x
