@@ -16,7 +16,7 @@ STEP, FIRST, FACTOR = 0.02, 0.05, 1.5  # of contraction; of pressure [MPa], and 
 
 
 class Quick:
-    """States of one muscle; 2 to 4 ms each."""
+    """States of one muscle; 1 to 3 ms each."""
 
     def __init__(self, studied: StudiedMuscle, effects: Effects | None = None) -> None:
         path = LoadPath(kind=PathKind.ISOBARIC, held=0.0, stops=(0.0,))
