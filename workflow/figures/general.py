@@ -99,10 +99,9 @@ def draw(table: pd.DataFrame) -> Figure:
 def _thinned(table: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     """The rows of MOST series at most, evenly among all, and a sentence that says so."""
     names = list(table[SERIES].unique())
-    every = -(-len(names) // MOST)
-    kept = names[::every]
-    if every == 1:
+    if len(names) <= MOST:
         return table, ""
+    kept = names[:: -(-len(names) // MOST)]
     said = f"{len(kept)} of {len(names)} series are drawn; the table of the figure has them all."
     return table[table[SERIES].isin(kept)], said
 

@@ -63,6 +63,12 @@ def texts(figure):
     ]
 
 
+def test_a_figure_of_nothing_is_empty(scene):
+    table = general.table(scene("curves"))
+    (ax,) = general.draw(table.iloc[:0]).axes
+    assert not ax.lines or not any(len(line.get_xdata()) for line in ax.lines)
+
+
 def test_what_follows_stands_against_what_is_swept(scene):
     table = general.table(scene("curves"))
     (ax,) = general.draw(table).axes
