@@ -155,6 +155,7 @@ def history_of(*rows, steps, kind="isobaric", held=0.3, **more):
     return LoadPath(kind=kind, held=held, stops=through(rows, times), history=history)
 
 
+@pytest.mark.parametrize("model", ["cylinder", "membrane"])
 @pytest.mark.parametrize(
     "rows",
     [
@@ -164,12 +165,12 @@ def history_of(*rows, steps, kind="isobaric", held=0.3, **more):
     ],
     ids=["relaxation", "two amplitudes", "no wave"],
 )
-def test_histories_agree_with_an_eighth_of_the_step(make_case, solve_case, rows):
+def test_histories_agree_with_an_eighth_of_the_step(make_case, solve_case, rows, model):
     memory = Memory(shares=(0.1, 0.1, 0.2), times=(0.3, 3.0, 30.0))
 
     def force(steps):
         path = history_of(*rows, steps=steps)
-        states = solve_case(make_case(model="cylinder", path=path, memory=memory)).states
+        states = solve_case(make_case(model=model, path=path, memory=memory)).states
         assert np.all(np.diff(states["dissipated"]) >= 0)
         return states["force"][:: steps // 10]
 

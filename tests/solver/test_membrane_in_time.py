@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solver import balance
-from solver.history import History, Start, Valve, Wave, sampled, through
+from solver.history import History, Start, Valve, Wave, sampled
 from solver.load_path import LoadPath
 from solver.memory import Memory
 from solver.refusal import UnsolvableCase
@@ -67,32 +67,6 @@ def test_contraction_under_a_load(make_case, solve_case, frequency, wide, middle
     there, back = np.interp(0.3, p[:31], e[:31]), np.interp(0.3, p[30:][::-1], e[30:][::-1])
     assert back - there == pytest.approx(wide, abs=2e-5)
     assert (there + back) / 2 == pytest.approx(middle, abs=1e-4)
-
-
-@pytest.mark.parametrize(
-    "rows",
-    [
-        ((0, 0), (0.4, 0.1), (4, 0.1)),  # a relaxation
-        ((0, 0), (1, 0.2), (1.6, 0.08), (2.4, 0.2), (4, 0)),  # two amplitudes
-        ((0, 0.02), (0.8, 0.15), (1.2, 0.15), (3.2, 0.05), (4, 0.18)),  # no wave
-    ],
-    ids=["relaxation", "two amplitudes", "no wave"],
-)
-def test_histories_agree_with_an_eighth_of_the_step(make_case, solve_case, rows):
-    memory = Memory(shares=(0.1, 0.1, 0.2), times=(0.3, 3.0, 30.0))
-
-    def force(steps):
-        times = tuple(4.0 * k / steps for k in range(steps + 1))
-        stops = through(rows, times)
-        path = LoadPath(kind="isobaric", held=0.3, stops=stops, history=History(times=times))
-        states = solve_case(make_case(path=path, memory=memory)).states
-        assert np.all(np.diff(states["dissipated"]) >= 0)
-        return states["force"][:: steps // 10]
-
-    coarse, middle, fine = force(20), force(40), force(160)
-    first, second = (np.max(np.abs(values - fine)) for values in (coarse, middle))
-    assert second < 2e-4 * np.max(np.abs(fine))
-    assert first / second == pytest.approx(4, rel=0.25)
 
 
 def test_contraction_under_a_load_without_memory(make_case, solve_case):
