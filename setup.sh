@@ -149,7 +149,7 @@ compile_clock() {
     local cc library=.venv/lib/muscle_clock.so
     cc=$(command -v cc || command -v gcc) || return 0
     [[ $library -nt solver/clock.c ]] || quietly "$cc" -O2 -shared -fPIC -o "$library" solver/clock.c ||
-        say "solver/clock.c could not be compiled: FreeFEM will take a fifth longer."
+        say "solver/clock.c could not be compiled: FreeFEM will take up to a third longer."
 }
 
 # Our sources compiled, as pip does it with those of packages: where PYTHONDONTWRITEBYTECODE is set or the checkout is
@@ -163,7 +163,7 @@ if ! command -v cc >/dev/null && ! command -v gcc >/dev/null; then
     if command -v apt-get >/dev/null && { [[ $(id -u) == 0 ]] || sudo -n true 2>/dev/null; }; then
         missing+=(gcc libc6-dev)
     else
-        say "There is no C compiler (gcc): FMUs of maps will hold their source alone, FreeFEM takes a fifth longer."
+        say "There is no C compiler (gcc): FMUs of maps will hold their source alone, FreeFEM takes up to a third longer."
     fi
 fi
 [[ ${#missing[@]} == 0 ]] || install_packages "${missing[@]}"

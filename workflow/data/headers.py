@@ -91,7 +91,7 @@ class Word:
     quantities: Mapping[str, str]  # by dimension; the first is that of a column without a unit
 
 
-OF_MUSCLES = (
+OF_MUSCLES = (  # also in other languages; escaped are Polish, and pressure ... in Japanese, Chinese
     Word(
         (
             *("pressure", "press", "druck", "pression", "presion", "pressione", "druk", "pressao"),

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
@@ -81,9 +82,11 @@ def _in_words(summary: pd.DataFrame) -> str:
     of_all = summary[summary["choices"] == "all"].iloc[0]
     ratios = summary.dropna(subset=["cost_ratio [1]"])
     costs = (f"{row['choices']}: {row['cost_ratio [1]']:.2f} times" for _, row in ratios.iterrows())
+    worst = of_all["worst [1]"]
+    lost = "states lost" if np.isinf(worst) else f"{worst:.2g} times its tolerance"
     return (
         f"{of_all['count']:.0f} choices, {of_all['missed']:.0f} missed, "
         f"{of_all['not_promised']:.0f} not promised; median overestimate "
-        f"{of_all['median_overestimate [1]']:.2g}, worst {of_all['worst [1]']:.2g} of its "
-        f"tolerance. Taken against hindsight, {'; '.join(costs)}."
+        f"{of_all['median_overestimate [1]']:.2g}, worst: {lost}. "
+        f"Taken against hindsight, {'; '.join(costs)}."
     )
