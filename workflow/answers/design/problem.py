@@ -65,8 +65,14 @@ class Requirement:
     @property
     def text(self) -> str:
         """``force at 5 %, 0.4 MPa: at least 500 N``."""
-        sign = "at least" if self.sense > 0 else "at most"
-        return f"{self.what}: {sign} {self.limit:.4g} {self.unit}".rstrip()
+        turned = -1 if self.measure.startswith("-") else 1
+        sign = "at least" if self.sense * turned > 0 else "at most"
+        return f"{self.what}: {sign} {turned * self.limit:.4g} {self.unit}".rstrip()
+
+    def value(self, measures: Measures) -> float:
+        """What it is, as a user would say it."""
+        value = measures[self.measure]
+        return -value if self.measure.startswith("-") else value
 
 
 class Problem:
@@ -205,6 +211,12 @@ class Problem:
         }
         chosen = [*self.entry.minimise, *self.entry.maximise]
         return [named.get(key, key) for key in chosen]
+
+    def bound(self, measure: str, limit: float) -> Requirement:
+        """An objective that is at most so much (of one that is to be large: at least)."""
+        text = self.text_of(measure, limit).split(": ")[0]
+        unit = self.text_of(measure, limit).split()[-1]
+        return Requirement("trade-off", measure, -1, limit, text, unit)
 
     def contractions(self, studied: StudiedMuscle) -> dict[float, list[float]]:
         """At which states are needed, by pressure: from none to the largest that is required."""

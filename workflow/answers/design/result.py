@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from geometry.files import atomic_write
 from workflow.answers import sheet, sheet_files
@@ -18,36 +20,54 @@ from workflow.answers.design.search import MISSED, Found, Missed, Trial, looked_
 from workflow.answers.sheet import Sheet
 from workflow.answers.store import Store
 from workflow.figures import style
-from workflow.figures.style import COLUMN_WIDTH, SERIES, labelled, legend, panels, percent
+from workflow.figures.style import COLUMN_WIDTH, FULL, SERIES, labelled, legend, panels, percent
 from workflow.study.contents import Study
 
 ACTIVE = 2e-3  # share of its limit within which a requirement decides the muscle
-SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)  # of the first of two objectives
+SHARES = (0.25, 0.5, 0.75)  # of the way from one end of a trade-off to the other
 
 
 def designed(study: Study, name: str) -> list[Found]:
-    """What a design gives; one result, or of two objectives one for each of their weights.
+    """What a design gives: one result, or of two objectives those of the trade-off between them.
 
-    Of two that have the same optimum it is one too.
+    Between its ends the first objective is as small as may be where the second is at most so much,
+    in equal steps: unlike the least of a weighted sum that reaches every part of the curve, as the
+    curve may be hollow. Muscles that are no better than another by either objective are left out.
     """
     problem, store = Problem(study, name), Store(study)
     if len(problem.objectives) == 1:
         return [looked_for(problem, store)]
-    first, last = (looked_for(problem, store, weight) for weight in ((1.0, 0.0), (0.0, 1.0)))
+    first, last = looked_for(problem, store, 0), looked_for(problem, store, 1)
     if first.best is None or last.best is None:
         return [first if first.best is None else last]
     if np.array_equal(first.best.x, last.best.x):
         return [replace(first, agreed=True)]  # there is nothing between them
-    sizes = [
-        abs(found.best.measures[measure]) or 1.0
-        for found, measure in zip((first, last), problem.objectives, strict=True)
-        if found.best is not None
-    ]
+    measure = problem.objectives[1]
+    start, end = first.best.measures[measure], last.best.measures[measure]
     between = [
-        looked_for(problem, store, (share / sizes[0], (1 - share) / sizes[1]))
-        for share in SHARES[1:-1]
+        looked_for(problem, store, 0, problem.bound(measure, start + share * (end - start)))
+        for share in SHARES
     ]
-    return [first, *between, last]
+    return _undominated([first, *between, last])
+
+
+def _undominated(results: Sequence[Found]) -> list[Found]:
+    """Results to which no other one is better or equal by both objectives, in their order."""
+    kept: list[Found] = []
+    for found in results:
+        if found.best is None:
+            continue
+        size = _sizes(found, found.best)
+        others = [_sizes(k, k.best) for k in (*kept, results[-1]) if k.best and k is not found]
+        if not any((other <= size).all() for other in others):
+            kept = [k for k in kept if k.best and not (size <= _sizes(k, k.best)).all()]
+            kept.append(found)
+    return kept
+
+
+def _sizes(found: Found, best: Trial) -> NDArray[np.float64]:
+    """The objectives of a muscle."""
+    return np.array([best.measures[measure] for measure in found.problem.objectives])
 
 
 # --- text -----------------------------------------------------------------------------------------
@@ -93,8 +113,8 @@ def report(found: Found) -> list[str]:
     ]
     if found.agreed:
         lines.append("  no other muscle is better by either objective: there is nothing to trade")
-    for requirement in problem.requirements:
-        value = best.measures[requirement.measure]
+    for requirement in [*problem.requirements, *([found.bound] if found.bound else [])]:
+        value = requirement.value(best.measures)
         decides = "  <- decides" if requirement.violation(best.measures) > -ACTIVE else ""
         lines.append(f"  {requirement.name}: {requirement.text}, is {value:.5g}{decides}")
     for key, (low, high) in found.flat.items():
@@ -147,7 +167,8 @@ def as_dict(found: Found) -> dict[str, Any]:
 
     return {
         "design": problem.name,
-        "weight": list(found.weight),
+        "objective": problem.objectives[found.objective],
+        "bound": found.bound.limit if found.bound else None,
         "best": trial(found.best) if found.best is not None else None,
         "active": [
             r.name
@@ -225,8 +246,11 @@ def sheets(study: Study, name: str, results: Sequence[Found]) -> list[Sheet]:
 
 
 def draw(results: Sequence[Found], made: Sequence[Sheet]) -> Figure:
-    """The curves of what was found, and the forces that were required."""
-    figure, axes = panels(COLUMN_WIDTH, 3.2)
+    """The curves of what was found, the forces that were required, and a trade-off."""
+    found = [(each, each.best) for each in results if each.best is not None]
+    trades = len(results[0].problem.objectives) == 2 and len(found) > 1
+    width, columns = (FULL, 2) if trades else (COLUMN_WIDTH, 1)
+    figure, axes = panels(width, 3.2, 1, columns, gap=(0.75, 0.0))
     ax, problem = axes[0, 0], results[0].problem
     for number, each in enumerate(made):
         contraction = np.linspace(0, each.curve.contraction[-1], 200)
@@ -243,8 +267,25 @@ def draw(results: Sequence[Found], made: Sequence[Sheet]) -> Figure:
     ax.set_xlabel(f"contraction [%], {problem.entry.pressure:g} MPa")
     ax.set_ylabel("force [N]")
     percent(ax.xaxis, 0.05)
+    if trades:
+        _trade_off(axes[0, 1], problem, [best for _, best in found])
     legend(figure, labelled(axes))
     return figure
+
+
+def _trade_off(ax: Axes, problem: Problem, best: Sequence[Trial]) -> None:
+    """Muscles by both objectives: what more of one costs of the other."""
+    signs = [-1 if measure.startswith("-") else 1 for measure in problem.objectives]
+    values = np.array([[b.measures[m] for m in problem.objectives] for b in best]) * signs
+    ax.plot(*values.T, color="0.6", linewidth=0.8, zorder=1)
+    for number, point in enumerate(values):
+        ax.plot(*point, marker="o", linestyle="none", color=SERIES[number % len(SERIES)]["color"])
+    names = []
+    for measure in problem.objectives:
+        name, value = problem.text_of(measure, 0.0).split(": ")
+        names.append(f"{name} [{value.split()[-1]}]")
+    ax.set_xlabel(names[0])
+    ax.set_ylabel(names[1])
 
 
 def write(study: Study, name: str, results: Sequence[Found], output: Path) -> None:

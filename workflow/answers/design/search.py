@@ -17,7 +17,6 @@ from geometry.refusal import Refusal
 from workflow.answers.curve import Curve
 from workflow.answers.design.problem import Array, Measures, Problem, Requirement, cover
 from workflow.answers.store import Store
-from workflow.study.errors import StudyError
 
 MISSED, PREDICTED = 1e-3, 2e-3  # shares: of a requirement, of the objective
 INSIDE = 3e-4  # share of its limit by which an optimum keeps clear of a requirement
@@ -65,6 +64,8 @@ class Found:
     Attributes
     ----------
     trials : muscles that the solid has judged, in order
+    objective : place of the one that is as small as may be, among those of the problem
+    bound : what the other one may be at most, between the ends of a trade-off
     best : the best of them; None where none meets the requirements
     missed : where none can, the smallest sets of requirements that stand in the way, by how much
     flat : between which values a number may go for one per cent of the objective
@@ -73,7 +74,8 @@ class Found:
     """
 
     problem: Problem
-    weight: tuple[float, ...]
+    objective: int = 0
+    bound: Requirement | None = None
     trials: list[Trial] = field(default_factory=list)
     best: Trial | None = None
     missed: list[Missed] = field(default_factory=list)
@@ -84,18 +86,22 @@ class Found:
 
 
 class Search:
-    """A search with the objectives of a problem in some weights."""
+    """A search for the least of one objective of a problem, the other bounded or left out."""
 
-    def __init__(self, problem: Problem, store: Store, weight: tuple[float, ...] = (1.0,)) -> None:
-        self.problem, self.store, self.weight = problem, store, weight
+    def __init__(
+        self, problem: Problem, store: Store, objective: int = 0, bound: Requirement | None = None
+    ) -> None:
+        self.problem, self.store = problem, store
+        self.minimised, self.bound = objective, bound
         self.ratios: dict[str, tuple[float, float]] = {}
-        self.requirements: Sequence[Requirement] = problem.requirements
-        self._scale = 1.0
+        self.asked = [*problem.requirements, *([bound] if bound else [])]
+        self.requirements: Sequence[Requirement] = self.asked
+        self._scale = 0.0
 
     def run(self) -> Found:
         """Look for it."""
-        found = Found(self.problem, self.weight)
-        before = sum(self.store.solves.values())
+        found = Found(self.problem, self.minimised, self.bound)
+        before, looked = sum(self.store.solves.values()), self.problem.evaluations
         x = self.refined(self.everywhere(self._cost))
         for _ in range(ROUNDS):
             if self.worst(x) > FAR:
@@ -119,7 +125,7 @@ class Search:
             found.missed = self.in_the_way()
         if found.best is not None:
             found.flat = self.flat(found.best.x)
-        found.states = self.problem.evaluations
+        found.states = self.problem.evaluations - looked
         found.solves = sum(self.store.solves.values()) - before
         return found
 
@@ -137,9 +143,8 @@ class Search:
         }
 
     def objective(self, measures: Measures) -> float:
-        """All objectives, in their weights."""
-        values = [measures[name] for name in self.problem.objectives]
-        return float(np.dot(values, self.weight))
+        """What is to be as small as may be."""
+        return measures[self.problem.objectives[self.minimised]]
 
     def violations(self, x: Array, requirements: Iterable[Requirement]) -> list[float]:
         """By how much requirements are missed."""
@@ -184,14 +189,9 @@ class Search:
         if measures is None:
             return CORNER
         missed = sum(max(r.violation(measures), 0.0) for r in self.requirements)
-        sizes = [measures[name] for name in self.problem.objectives]
-        return WEIGHT * missed + float(np.dot(sizes, self.weight)) / self._size(sizes)
-
-    def _size(self, sizes: Sequence[float]) -> float:
-        """Of the objective, by the first muscle that was looked at."""
-        if self._scale == 1.0:
-            self._scale = abs(float(np.dot(sizes, self.weight))) or 1.0
-        return self._scale
+        objective = self.objective(measures)
+        self._scale = self._scale or abs(objective)  # by the first muscle that was looked at
+        return WEIGHT * missed + objective / (self._scale or 1.0)
 
     def _misfit(self, x: Array) -> float:
         """What is missed without any state: too many threads, too long; 0 if nothing is."""
@@ -255,7 +255,7 @@ class Search:
             measures = self.measures(candidate(z))
             if measures is None:
                 return CORNER
-            return self.objective(measures) / self._scale
+            return self.objective(measures) / (self._scale or 1.0)
 
         def margins(z: Array) -> Array:
             violations = np.array(self.violations(candidate(z), self.requirements))
@@ -293,7 +293,7 @@ class Search:
 
     def _without(self, removed: Sequence[Requirement]) -> Missed | None:
         """The muscle that misses some requirements least and meets the others, if one does."""
-        kept = [r for r in self.problem.requirements if r not in removed]
+        kept = [r for r in self.asked if r not in removed]
 
         def cost(x: Array) -> float:
             self.requirements = kept
@@ -308,7 +308,7 @@ class Search:
             x = self.everywhere(cost, QUICK_GENERATIONS)
             worst = max(self.violations(x, kept), default=0.0)
         finally:
-            self.requirements = self.problem.requirements
+            self.requirements = self.asked
         measures = self.measures(x)
         if measures is None or worst > 10 * MISSED:
             return None
@@ -339,14 +339,14 @@ class Search:
         return found
 
 
-def looked_for(problem: Problem, store: Store, weight: tuple[float, ...] = (1.0,)) -> Found:
-    """The best muscle of a problem.
+def looked_for(
+    problem: Problem, store: Store, objective: int = 0, bound: Requirement | None = None
+) -> Found:
+    """The muscle that has the least of an objective of a problem.
 
     Raises
     ------
     StudyError
         If a curve could not be solved for a reason that says nothing about the muscle.
     """
-    if len(weight) != len(problem.objectives):
-        raise StudyError(f"design.{problem.name}: {len(problem.objectives)} objectives")
-    return Search(problem, store, weight).run()
+    return Search(problem, store, objective, bound).run()
