@@ -14,7 +14,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-from workflow.study.errors import StudyError
+from workflow.study.errors import StudyError, choices
 
 FOLDER = Path(__file__).parent / "programs"
 INTERRUPTED = 128 + signal.SIGINT  # exit status, as a shell gives it
@@ -33,6 +33,13 @@ def main(arguments: list[str] | None = None) -> int:
     os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # files are whole or absent
     name = given[0] if given else ""
     if name not in names():
+        if name and not name.startswith("-"):
+            seldom = sorted(names(), key=lambda name: name in OF_RULES)
+            print(
+                f"muscle {name}: no such program\n  allowed: {choices(name, seldom)}",
+                file=sys.stderr,
+            )
+            return 2
         _parser().parse_args(given or ["--help"])
     program = import_module(f"workflow.programs.{_module(name)}")
     parser = argparse.ArgumentParser(prog=f"muscle {name}", description=program.__doc__)

@@ -95,11 +95,12 @@ def test_help_names_every_program(capsys):
     assert {"run", "explain", "check", "retry", "list"} <= set(names()) | {"check"}
 
 
-def test_a_name_that_is_none_is_refused(capsys):
-    with pytest.raises(SystemExit) as ended:
-        main(["explian"])
-    assert ended.value.code == 2
-    assert "'explain'" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("name", "nearest"), [("explian", "explain"), ("fit_rubber", "fit-rubber"), ("asks", "ask")]
+)
+def test_a_name_that_is_none_is_refused(name, nearest, capsys):
+    assert main([name, "--study", "mine.yaml"]) == 2
+    assert f"(nearest: {nearest})" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("targets", [[], ["claims"], ["results/figures/fig04.png", "everything"]])

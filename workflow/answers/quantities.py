@@ -43,6 +43,11 @@ KIND_OF = {unit: kind for kind, sizes in UNITS.items() for unit in sizes} | dict
 )
 PLAIN = {PRESSURE: "MPa", CONTRACTION: "1", FORCE: "N"}  # of a number without a unit
 EXAMPLES = {PRESSURE: "0.25MPa or 2.5bar", CONTRACTION: "12% or 36mm", FORCE: "200N or 5kg"}
+NAMES = {  # as words before a quantity: stroke 20mm, p=2.5bar
+    **dict.fromkeys(("pressure", "p"), PRESSURE),
+    **dict.fromkeys(("contraction", "stroke"), CONTRACTION),
+    **dict.fromkeys(("force", "load", "f"), FORCE),
+}
 LARGEST = Decimal("0.6")  # contraction of a muscle
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 WRITTEN = re.compile(rf"\s*({NUMBER})\s*([^\s\d.,+-][^\s]*)?\s*")
@@ -116,12 +121,25 @@ def is_fraction(text: str) -> bool:
     return bool(found and not found[2] and abs(Decimal(found[1])) <= LARGEST)
 
 
+def named(words: list[str]) -> list[tuple[str, str]]:
+    """Quantities of a command line: what they are called, empty if nothing, and as written."""
+    apart = [part for word in words for part in re.split(r"(?<=[A-Za-z])[=:]", word) if part]
+    found, name = [], ""
+    for text in split(apart):
+        if not name and text.lower() in NAMES:
+            name = text
+        else:
+            found.append((NAMES[name.lower()] if name else "", text))
+            name = ""
+    return [*found, ("", name)] if name else found  # a name of nothing is no quantity
+
+
 def split(words: list[str]) -> list[str]:
     """Words of a command line, those of one quantity joined: ``0.25 MPa`` is one."""
     found: list[str] = []
     for word in words:
         is_number = found and re.fullmatch(r"[-+.,\deE]*\d[.,]?", found[-1])
-        if is_number and not re.match(r"[-+.,]?\d", word):
+        if is_number and not re.match(r"[-+.,]?\d", word) and word.lower() not in NAMES:
             found[-1] += word
         else:
             found.append(word)

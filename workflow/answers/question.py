@@ -322,8 +322,11 @@ class _Question:
         for _ in range(ROUNDS):
             path = self._path(PathKind.ISOMETRIC, known[CONTRACTION], pressure)
             case, solution = self._solved(model, variant, path)
-            missing = known[FORCE] - float(solution.states["force"][0])
+            force = float(solution.states["force"][0])
+            missing = known[FORCE] - force
             slope = float(solution.states["force_by_pressure"][0])
+            if math.isnan(slope) and pressure:  # of Eq. (1), whose force is proportional to it
+                slope = force / pressure
             if not slope > 0:
                 break
             change = missing / slope
@@ -367,11 +370,21 @@ class _Question:
         return next((e.error for e in estimates if e.rung.name == rung), math.nan), note
 
     def _notes(self, found: Mapping[str, float]) -> list[str]:
-        """What the signs of a state mean."""
+        """What the signs of a state mean; what can be reached instead is that of the cylinder."""
+        pressure, contraction = found[PRESSURE], found[CONTRACTION]
         if found[FORCE] < 0:
-            return ["it does not come here by itself: it has to be pushed"]
-        if found[CONTRACTION] < 0:
-            return ["it is longer than at rest"]
+            said = "it does not come here by itself: it has to be pushed"
+            free = self.quick.contraction(pressure, 0.0)
+            if 0 < free < contraction:
+                said += f"; at {pressure:g} MPa it gets shorter by about {100 * free:.2g} % alone"
+            from_here = self.quick.pressure(contraction, 0.0)
+            if from_here > pressure:
+                said += f"; at {100 * contraction:g} % it pulls from about {from_here:.2g} MPa on"
+            return [said]
+        if contraction < 0:
+            blocked = self.quick.force(pressure, 0.0)
+            beside = f"; at its length at rest it pulls about {blocked:.3g} N"
+            return ["it is longer than at rest" + (beside if blocked < found[FORCE] else "")]
         return []
 
 

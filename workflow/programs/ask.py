@@ -1,9 +1,9 @@
 """Answer what a muscle does: of pressure, contraction and force two are given.
 
-As ``muscle ask dmsp20 0.25MPa 12%``, ``muscle ask dmsp20 5kg 30mm``, or with --pressure,
---contraction (or --stroke) and --force (or --load). A mass is the load that hangs from the muscle,
-a length how much shorter it gets; beside a pressure 0.12 is 12%. The record of the answer is kept
-in results/cases; asked again, nothing is solved.
+As ``muscle ask dmsp20 0.25MPa 12%``, ``muscle ask dmsp20 load 5kg stroke 30mm``, or with
+--pressure, --contraction (or --stroke) and --force (or --load). A mass is the load that hangs from
+the muscle, a length how much shorter it gets; beside a pressure 0.12 is 12%. The record of the
+answer is kept in results/cases; asked again, nothing is solved.
 """
 
 import argparse
@@ -54,10 +54,12 @@ def run(given: argparse.Namespace) -> int:
     study = with_muscle(given.study, given.muscle)
     asked = {kind: getattr(given, kind) for kind in quantities.KINDS}
     length = study.muscles[given.muscle].muscle.length
-    words = quantities.split(given.quantities)
-    for text in sorted(words, key=quantities.is_fraction):  # beside a pressure it has one meaning
-        if asked[quantities.PRESSURE] is not None and quantities.is_fraction(text):
-            kind = quantities.CONTRACTION
+    words = quantities.named(given.quantities)
+    for name, text in sorted(words, key=lambda word: quantities.is_fraction(word[1])):
+        if name:
+            kind = name
+        elif asked[quantities.PRESSURE] is not None and quantities.is_fraction(text):
+            kind = quantities.CONTRACTION  # beside a pressure it has one meaning
         else:
             kind, _ = quantities.read(text, length)
         if asked[kind] is not None:

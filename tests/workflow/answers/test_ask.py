@@ -159,6 +159,25 @@ def test_a_question_that_makes_no_sense_is_answered_with_what_does(ask, given, s
     assert said in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"pressure": "2.5bar", "contraction": "24%"}, "shorter by about 19 % alone"),
+        ({"pressure": "0.2bar", "contraction": "5%"}, "at 5 % it pulls from about 0.08"),
+        ({"pressure": "2.5bar", "force": "2kN"}, "at its length at rest it pulls about 573 N"),
+    ],
+)
+def test_of_a_state_that_it_does_not_come_to_alone_it_is_said_what_it_does(ask, given, said):
+    assert said in " ".join(ask(**given, model="cylinder").notes)
+
+
+@pytest.mark.parametrize("model", ["geometric", "geometric_layers"])
+def test_an_equation_without_a_slope_has_its_pressure(ask, model):
+    first = ask(pressure="0.25MPa", contraction="12%", model=model)
+    other = ask(contraction="12%", force=first.force, model=model)
+    assert other.pressure == pytest.approx(0.25, abs=1e-6)
+
+
 def test_the_command_prints_text_and_json(folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
     words = ["ask", "dmsp20", "0.3", "MPa", "10%", "--model", "cylinder", "--study", str(STUDY)]
@@ -178,6 +197,9 @@ def test_a_fraction_beside_a_pressure_is_a_contraction(folder, monkeypatch, caps
     monkeypatch.chdir(folder)
     more = ["--model", "cylinder", "--study", str(STUDY)]
     for words in (["250kPa", "0.12"], ["0.12", "2.5", "bar"], ["0.12", "--pressure", "0.25"]):
+        assert main(["ask", "dmsp20", *words, *more]) == 0
+        assert capsys.readouterr().out.startswith("dmsp20 at 0.25 MPa, 12 %")
+    for words in (["stroke", "36", "mm", "p=2.5bar"], ["pressure=0.25", "contraction", "0.12"]):
         assert main(["ask", "dmsp20", *words, *more]) == 0
         assert capsys.readouterr().out.startswith("dmsp20 at 0.25 MPa, 12 %")
     for words in (["50N", "0.12"], ["0.25", "0.12"], ["0.25MPa", "12"]):

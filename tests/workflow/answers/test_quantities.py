@@ -3,7 +3,7 @@
 import pint
 import pytest
 
-from workflow.answers.quantities import KIND_OF, STROKES, UNITS, read, split
+from workflow.answers.quantities import KIND_OF, STROKES, UNITS, named, read, split
 from workflow.study.errors import StudyError
 
 LENGTH = 300.0
@@ -90,6 +90,15 @@ def test_words_of_one_quantity_are_joined():
     assert split(["5", "kg", "3", "cm"]) == ["5kg", "3cm"]
     assert split(["5", "12%"]) == ["5", "12%"]
     assert split(["2.5", "Bars", "0,5", "kN"]) == ["2.5Bars", "0,5kN"]
+
+
+def test_a_quantity_may_be_named():
+    assert named(["stroke", "20", "mm", "p=2.5", "bar"]) == [
+        ("contraction", "20mm"), ("pressure", "2.5bar"),
+    ]  # fmt: skip
+    assert named(["0.3", "MPa", "Load:5kg"]) == [("", "0.3MPa"), ("force", "5kg")]
+    assert named(["0.3", "force", "5"]) == [("", "0.3"), ("force", "5")]
+    assert named(["5kg", "stroke"]) == [("", "5kg"), ("", "stroke")]
 
 
 def test_every_kind_has_units():
