@@ -39,6 +39,7 @@ RIDGE = 0.1  # of features whose spread is 1: as a tenth of a muscle that says n
 MOST = 50.0  # of a logarithm: far from the middle of the table a spread says nothing
 LEAST = 1e-7  # share: of smaller errors no law is fitted
 BEYOND = 0.1  # of a range (of its logarithm, where it is a ratio): so far a law is believed beyond
+STRETCH = 0.2  # of threads: fibres of nylon break there; beyond it they are rubber, not a net
 LOGARITHMIC = ("pressure", "wall", "length", "strain", "lowest")
 PLAIN = ("angle", "furthest", "first", "load", "gap", "sleeve")
 OF_STATE = ("contraction", "at", "pull")
@@ -230,7 +231,7 @@ def _is_like(case: Case) -> bool:
         more = BEYOND * (high - low)
         if not low - more <= value <= high + more:
             return False
-    return True
+    return likeness.thread_stretch(groups) <= STRETCH
 
 
 def _are_like(states: Mapping[str, Array], rung: str) -> NDArray[np.bool_]:

@@ -3,7 +3,8 @@
 Muscles of equal groups have equal shares of error, whatever their size.
 """
 
-from math import degrees, pi
+from collections.abc import Mapping
+from math import cos, degrees, pi, radians, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +57,16 @@ def groups(case: Case) -> dict[str, float]:
         "gap": max(gap, 0.0) / muscle.outer_radius,
         "sleeve": sum(each.kind is Kind.SLEEVE for each in layers) / len(layers),
     }
+
+
+def thread_stretch(of: Mapping[str, float]) -> float:
+    """About how far threads stretch at the largest pressure, as a share, by groups of a curve.
+
+    Of a thin net at its first angle, which bears the pressure around itself alone:
+    p D^2 pi cos(angle) / (2 n EA sin^2(angle)).
+    """
+    angle = radians(of["angle"])
+    return pi / 2 * of["strain"] * cos(angle) / sin(angle) ** 2
 
 
 def of_states(case: Case, solution: Solution) -> dict[str, NDArray[np.float64]]:

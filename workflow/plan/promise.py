@@ -29,16 +29,18 @@ from solver.case import Case, canonical, digest
 from solver.record import Solution
 from workflow.plan.judged import FOLLOWS, ZERO, difference, is_answer, is_valid, variable_of
 from workflow.plan.like_muscles import Guess, guess, seconds
+from workflow.plan.likeness import share
 
 CONFIDENT = 0.97  # share of like muscles on which a rung must hold to be taken without a check
 BY_COARSER = {  # error of a mesh by its difference from the next coarser one of the ladder:
-    "default": 2.0,  # 97 of 100 curves of the ladder have less; their median is 0.44
+    "default": 1.5,  # 95 of 100 curves of the ladder have less; their median is 0.44
     "finer": 0.5,  # of second order it is 1/3, and 1.5 of that for safety
 }
 START = 40  # states that cost as much as getting to the first one
 CHEAP = 0.6  # of the cost of all states: a check at a few of them that costs more is not worth it
 MORE = 1.5  # times the cost of a mesh that holds: a finer one is taken for so much
 TELLING = 4  # states at most of a check
+LIKELY = 0.8  # error of the default mesh by its difference from the coarser one: 8 of 10 have less
 Solve = Callable[[Case], Solution]
 Known = Callable[[Case], Solution | None]
 
@@ -165,6 +167,7 @@ class _Climb:
         self.names = list(rungs)
         self.solved = {n: found for n, case in rungs.items() if (found := self.known(case))}
         self.checked: dict[tuple[str, str], float] = {}  # difference of a rung from a better one
+        self.closed: dict[str, float] = {}  # error of a mesh by a finer one where that was open
         self.tried: list[tuple[str, int]] = []
 
     def first(self) -> str:
@@ -183,7 +186,10 @@ class _Climb:
             elif pair := self._worth_a_look(holding):
                 self._check(*pair)
             elif (name := holding or self._unguessed()) not in self.solved:
-                self._full(name)
+                if numbers := self._left_open(name):
+                    self._close(name, numbers)
+                else:
+                    self._full(name)
             else:
                 return self._outcome(self._best())
 
@@ -198,6 +204,7 @@ class _Climb:
                 return Verdict(inf, 0.0, f"{lost} states are lost, not valid or smoothed")
         found = [v for better in self._above(name) if (v := self._measured(name, better))]
         found += [v] if (v := self._by_coarser(name)) else []
+        found += [v] if (v := self._by_both(name)) else []
         if found:
             return min(found, key=lambda v: _worse(v.error))
         known = self.asked.guesses[name]
@@ -252,6 +259,15 @@ class _Climb:
             return None
         error = BY_COARSER[mesh] * off
         return Verdict(error, float(error <= self.asked.tolerance), f"measured here by {coarser}")
+
+    def _by_both(self, name: str) -> Verdict | None:
+        """Of a mesh, by a finer one at the states that the coarser one left open."""
+        error = self.closed.get(name, inf)
+        if not isfinite(error):
+            return None
+        finer = self._meshes(name)[self._meshes(name).index(name) - 1]
+        by = f"measured here by {finer} where coarser meshes leave it open"
+        return Verdict(error, float(error <= self.asked.tolerance), by)
 
     def _own_error(self, name: str) -> float:
         """What a rung may itself be off: by a coarser mesh, by like muscles; else infinite."""
@@ -325,6 +341,9 @@ class _Climb:
     def _unguessed(self) -> str:
         """Without a guess: the meshes of the best model, from the coarsest to the finest."""
         meshes = [n for n in self._meshes(self.names[-1])[::-1] if not self._given_up(n)]
+        there = [name for name in meshes if name in self.solved]
+        if any(not is_valid(self.solved[name]).all() for name in there):
+            return there[-1]
         return next((name for name in meshes if name not in self.solved), meshes[-1])
 
     def _given_up(self, name: str) -> bool:
@@ -332,7 +351,26 @@ class _Climb:
         meshes = self._meshes(name)
         coarser = [self.solved[n] for n in meshes[meshes.index(name) + 1 :] if n in self.solved]
         lost = [not is_valid(each).all() for each in coarser]
-        return name not in self.solved and len(lost) > 1 and any(lost)
+        if name in self.solved:
+            return False
+        return (len(lost) > 1 and any(lost)) or inf in map(self.closed.get, meshes)
+
+    def _left_open(self, name: str) -> tuple[int, ...]:
+        """Stops of the next coarser mesh that its own coarser one leaves open; none if many.
+
+        Nor where it is not likely exact enough there, as all of the finer mesh is needed then.
+        """
+        meshes = self._meshes(name)
+        mesh, coarser, *_ = [*meshes[meshes.index(name) + 1 :], "", ""]
+        if mesh in self.closed or not {mesh, coarser} <= self.solved.keys():
+            return ()
+        if ZERO in self.asked.judged or self._lost(mesh) or not self._by_coarser(mesh):
+            return ()
+        off, tolerance = self._off(coarser, mesh), self.asked.tolerance
+        numbers = np.flatnonzero(self._factor(mesh) * off > tolerance)
+        if LIKELY * np.nanmax(off) > tolerance or 2 * numbers.size > off.size:
+            return ()
+        return tuple(map(int, numbers))
 
     def _best(self) -> str:
         """The most exact of those that have most states."""
@@ -369,6 +407,34 @@ class _Climb:
         at = [*numbers, *([len(case.path.stops)] if path.zero_force else [])]
         off = [difference(case, own, found, each, at) for each in self.asked.judged]
         self.checked[name, better] = max(off, key=_worse)
+
+    def _close(self, finer: str, numbers: tuple[int, ...]) -> None:
+        """Compare a mesh with a finer one at the states that are open; it may lose them, too."""
+        meshes = self._meshes(finer)
+        name, coarser = meshes[meshes.index(finer) + 1 :][:2]
+        path = self.asked.rungs[finer].path
+        path = replace(path, stops=tuple(path.stops[k] for k in numbers))
+        found = self.solve(replace(self.asked.rungs[finer], path=path))
+        self.tried.append((finer, path.states))
+        if not is_valid(found).all():
+            self.closed[name] = inf
+            return
+        case, own = self.asked.rungs[name], self.solved[name]
+        off = max(difference(case, own, found, each, numbers) for each in self.asked.judged)
+        others = np.delete(self._off(coarser, name), numbers)
+        self.closed[name] = max(
+            (1 + BY_COARSER["finer"]) * off, self._factor(name) * np.nanmax(others, initial=0.0)
+        )
+
+    def _off(self, name: str, better: str) -> np.ndarray:
+        """Differences at all stops, of the worst of what is judged; shares of the largest value."""
+        case, pair = self.asked.rungs[name], (self.solved[name], self.solved[better])
+        found = [share(case, *pair, each)[: len(case.path.stops)] for each in self.asked.judged]
+        return np.asarray(np.max(found, axis=0))
+
+    @staticmethod
+    def _factor(name: str) -> float:
+        return BY_COARSER[name.partition(", ")[2] or "default"]
 
     def _outcome(self, name: str) -> Outcome:
         verdicts = {each: self.verdict(each) for each in self.names}
