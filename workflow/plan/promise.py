@@ -8,9 +8,11 @@ proved exact enough
   and what the better one may itself be off are within the tolerance,
 - or, of a mesh, by a coarser one on this curve.
 
-Where neither is so it climbs, but not to a finer mesh where of two coarser ones that are there one
-has lost states: it mostly loses them too, at many times the cost. Nothing is promised there of
-states that neither has, as the finer one may have them. Of the cheapest rung that like muscles
+Where neither is so it climbs, but not to a finer mesh where a coarser one has lost states: that
+proves nothing of the next, and finer ones mostly lose them too, at many times the cost. Nothing is
+promised there of states that none has, as a finer one may have them. Where two meshes leave open
+few states only, a finer one is solved at these alone: where a muscle folds, a curve of it costs
+many times such a state. Of the cheapest rung that like muscles
 prove it takes the finest mesh that they prove and that costs at most ``MORE`` times as much, which
 mostly serves a tighter tolerance too. Pure but for the two functions that it is given: what a rung
 gives is asked of ``solve``, what is there already of ``known``.
@@ -339,12 +341,15 @@ class _Climb:
         return None
 
     def _unguessed(self) -> str:
-        """Without a guess: the meshes of the best model, from the coarsest to the finest."""
+        """Without a guess: the meshes of the best model, from the coarsest, until states are lost."""
         meshes = [n for n in self._meshes(self.names[-1])[::-1] if not self._given_up(n)]
-        there = [name for name in meshes if name in self.solved]
-        if any(not is_valid(self.solved[name]).all() for name in there):
-            return there[-1]
-        return next((name for name in meshes if name not in self.solved), meshes[-1])
+        last = meshes[-1]
+        for name in meshes:
+            if name not in self.solved:
+                return name
+            if not is_valid(self.solved[name]).all() and name != last:
+                return name
+        return last
 
     def _given_up(self, name: str) -> bool:
         """Whether a mesh is not tried: of two coarser ones that are there one has lost states."""

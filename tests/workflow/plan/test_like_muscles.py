@@ -148,3 +148,14 @@ def test_a_muscle_of_latex_has_a_bar_of_its_own(make_case, muscle):
     assert found.max() >= 0.005 * 110
     assert np.argmax(found) == 10
     assert mesh_error.known_by(case, converged(states)) == "estimated from 112 like muscles"
+
+
+def test_nothing_is_guessed_where_threads_stretch_by_a_fifth(make_case):
+    """Of threads of less and less stiffness, in every other range: a thin net's stretch says it."""
+    case = make_case(model="solid", path=PATH)
+    own = likeness.groups(case)
+    softer = 0.21 / likeness.thread_stretch(own)
+    soft = replace(case, thread=Thread(stiffness=case.thread.stiffness / softer))
+    assert likeness.thread_stretch(likeness.groups(soft)) == pytest.approx(0.21)
+    assert like_muscles.guess(soft, "solid") is None
+    assert like_muscles.guess(case, "solid") is not None
