@@ -341,7 +341,7 @@ class _Climb:
         return None
 
     def _unguessed(self) -> str:
-        """Without a guess: the meshes of the best model, from the coarsest, until states are lost."""
+        """Without a guess: meshes of the best model, from the coarsest, until states are lost."""
         meshes = [n for n in self._meshes(self.names[-1])[::-1] if not self._given_up(n)]
         last = meshes[-1]
         for name in meshes:
