@@ -114,8 +114,14 @@ def of_solve(model: str, law: str = "") -> tuple[str, ...]:
 @cache
 def digest(files: tuple[str, ...]) -> str:
     """Digest of names and contents of files of the checkout."""
-    text = "".join(f"{file}\n{(ROOT / file).read_text()}" for file in files)
+    text = "".join(f"{file}\n{_text(ROOT / file)}" for file in files)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+@cache
+def _text(path: Path) -> str:
+    """What stands in a file; programs share most of theirs."""
+    return path.read_text()
 
 
 @cache
