@@ -148,7 +148,12 @@ def read(path: Path, words: tuple[Word, ...]) -> Table:
     lines_of_file = split
     if words is headers.OF_MUSCLES:
         split = wide.lengthened(name, split, words, _is_number)
-    first = next(k for k, (_, cells) in enumerate(split) if _share(cells) == 1 or _is_data(cells))
+    rows_of_numbers = (
+        k for k, (_, cells) in enumerate(split) if _share(cells) == 1 or _is_data(cells)
+    )
+    first = next(rows_of_numbers, None)
+    if first is None:
+        raise StudyError(f"{name}: there is no force in it: no line below the headers has numbers")
     comments = [(n, _uncommented(line)) for n, line in written if _is_comment(line)]
     above = [(n, cells) for n, cells in split[:first]]
     found, how_named = _columns(name, above, comments, separator, words, split[first])

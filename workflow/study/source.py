@@ -195,9 +195,9 @@ class Source:
 
     def _known_keys(self, keys: Keys) -> list[str]:
         """Keys that there are at a place of the file."""
-        if keys[:1] == ("materials",) and len(keys) == 2:
-            law = law_of(self.plain["materials"][keys[1]])
-            return list(MATERIALS[str(law)].model_fields)
+        if keys[:1] == ("materials",) and len(keys) > 1:
+            law = law_of(_named(self.plain["materials"], keys[1]))
+            return _schema_keys(keys[2:], MATERIALS[str(law)])
         return _schema_keys(keys)
 
     def _without(self, places: list[Keys], unknown: list[Keys]) -> dict[str, Any]:
@@ -208,8 +208,9 @@ class Source:
         }
         for section, name, key in unknown:
             if section in NAMED:
-                entry = left[section][name]
-                left[section][name] = {k: v for k, v in entry.items() if k != key}
+                entry = {k: v for k, v in _named(left[section], name).items() if k != key}
+                others = {k: v for k, v in left[section].items() if str(k) != str(name)}
+                left[section] = others | {name: entry}
             else:
                 left.pop(section, None)
         for place in places:
@@ -274,9 +275,13 @@ def _readable(key: str | int) -> str:
     return str(key) if plain else shown(key)
 
 
-def _schema_keys(keys: Keys) -> list[str]:
-    """Keys that the schema has at a place of the file."""
-    schema: Any = StudyFile
+def _named(entries: Mapping[Any, Any], name: str | int) -> Any:
+    """An entry by its name, which the schema has as text where the file has a number."""
+    return next(entry for key, entry in entries.items() if str(key) == str(name))
+
+
+def _schema_keys(keys: Keys, schema: Any = StudyFile) -> list[str]:
+    """Keys that the schema, or the part of it that is given, has at a place."""
     for key in keys:
         if isinstance(schema, type) and issubclass(schema, Entry):
             schema = schema.model_fields[str(key)].annotation
@@ -287,7 +292,7 @@ def _schema_keys(keys: Keys) -> list[str]:
             schema = _entry_within(schema)  # of a list that may be left out
         else:
             schema = get_args(schema)[1]  # of dict[name, entry]
-    return list(schema.model_fields)
+    return [field.alias or key for key, field in schema.model_fields.items()]
 
 
 def _entry_within(schema: Any) -> Any:

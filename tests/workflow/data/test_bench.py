@@ -335,6 +335,7 @@ REFUSED = {  # text, what the line says
     "packed": (b"\x1f\x8b\x08\x00rest", "a file of a spreadsheet or an archive"),
     "a spreadsheet": (b"PK\x03\x04rest", "a file of a spreadsheet"),
     "empty": ("", "there is no force in it"),
+    "a head of a table only": ("h [%] \\ p [bar],1,80,\n", "no line below the headers"),
     "words only": ("nothing\nhere\n", "no line has two numbers"),
 }
 

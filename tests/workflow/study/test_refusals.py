@@ -350,6 +350,16 @@ def test_a_key_that_is_no_word_hides_nothing(tmp_path):
     assert "study.yaml:28: 4 is no key here" in said
 
 
+def test_a_key_of_a_memory_that_is_none_is_refused_with_those_there_are(tmp_path):
+    said = refusal(tmp_path, changed("kappa: 1000", "memory: {per_decade: 0.06, form: 1}"))
+    assert "materials.nbr.memory.form is no key here\n  allowed: per_decade, from, to" in said
+
+
+def test_an_entry_whose_name_is_a_number_is_refused_with_what_is_in_it(tmp_path):
+    text = changed("\nmuscles:", "\n  1.5: {c10: 0.3, c01: 0.1, foo: 1}\nmuscles:")
+    assert "materials.1.5.foo is no key here" in refusal(tmp_path, text)
+
+
 def test_of_many_errors_the_first_are_said(tmp_path):
     said = refusal(tmp_path, beside(chain(30, "{{base: one, length: -1}}#{}")))
     assert said.endswith("... and 22 more")
