@@ -33,6 +33,7 @@ from workflow.data.states import (
 from workflow.figures import curves
 from workflow.figures.labels import SERIES, constants, muscles, series
 from workflow.figures.style import COLUMN_WIDTH, look_of, panels, percent
+from workflow.study import figure_needs
 from workflow.study.schema import FigureEntry
 
 OF_MAP = {CONTRACTION, PRESSURE, FORCE}  # columns that a force map has
@@ -45,8 +46,7 @@ def table(data: Any) -> pd.DataFrame:
     """States of all curves, and those of the maps where a map has what is shown."""
     kind, chosen = PathKind(data.scene.kind), data.scene.figure or FigureEntry()
     held, timed = CONTROL[kind.held.key], data.scene.in_time
-    x = _column(chosen.x or ("time" if data.scene.path == "transient" else kind.swept.key))
-    y = _column(chosen.y or kind.follows)
+    x, y = map(_column, figure_needs.axes(data.scene))
     if timed:
         held, frames = HELD, _over_time(data, kind, {x, y})
     else:

@@ -15,6 +15,7 @@ from workflow.plan.model_choice import Choice, Estimate
 from workflow.plan.plan import Place, Plan, PlannedCase
 from workflow.plan.promise import Promise
 from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
+from workflow.study.values import plain
 
 Outcomes = Callable[[str], Mapping[str, Any] | None]  # how a climb has ended, by its key
 
@@ -27,9 +28,11 @@ def lines(plan: Plan, outcome: Outcomes = lambda _: None) -> Iterator[str]:
     for name, places in plan.scenes.items():
         scene = plan.study.scenes[name]
         choice = model_choice.choose(plan.study, scene)
-        cases = {place.model: plan.cases[key].case for place, key in places.items()}
+        cases: dict[str, list[Case]] = {}
+        for place, key in places.items():
+            cases.setdefault(place.model, []).append(plan.cases[key].case)
         yield ""
-        yield f"{name}: {len(set(places.values()))} cases"
+        yield f"{name}: {_counted(len(set(places.values())), 'case')}"
         yield f"  wants    {_wish(scene, choice)}"
         if scene.in_time:
             yield from _memories(plan, scene)
@@ -42,8 +45,8 @@ def lines(plan: Plan, outcome: Outcomes = lambda _: None) -> Iterator[str]:
             continue
         yield f"  regimes  {', '.join(model_choice.regimes(plan.study, scene))}"
         yield from _models(scene, choice, model_choice.estimates(plan.study, scene))
-        for model, case in cases.items():
-            yield from _effects(model, case, scene)
+        for model, own in cases.items():
+            yield from _effects(model, own, scene)
         yield from _cases(plan, name, places)
 
 
@@ -69,8 +72,8 @@ def _course(scene: Scene) -> str:
         times = asked.period or (asked.table or ((0.0, 0.0),))[-1][:1]
         periods = ", ".join(f"{time:g}" for time in times)
         return (
-            f"and back ({wave}), {asked.cycles} cycles of {periods} s in {asked.samples} steps, "
-            f"{asked.start} at first"
+            f"and back ({wave}), {_counted(asked.cycles, 'cycle')} of {periods} s in "
+            f"{asked.samples} steps, {asked.start} at first"
         )
     if scene.transient is not None:
         given = scene.transient
@@ -91,7 +94,7 @@ def _memories(plan: Plan, scene: Scene) -> Iterator[str]:
         else:
             said = (
                 f"{len(memory.times)} branches of {memory.times[0]:g} to {memory.times[-1]:g} s, "
-                f"{100 * sum(memory.shares):.3g} % of the long-term stiffness"
+                f"{plain(100 * sum(memory.shares), 3)} % of the long-term stiffness"
             )
         if scene.effects.get("memory") == "off":
             said = "left out by the scene"
@@ -144,7 +147,7 @@ def _estimate(estimate: Estimate) -> str:
     if isnan(estimate.error):
         return "not measured"
     lost = "; some states are lost or not measured" if estimate.missing else ""
-    return f"error {100 * estimate.error:.2g} %, {estimate.seconds:.2g} s a curve{lost}"
+    return f"error {plain(100 * estimate.error, 2)} %, {plain(estimate.seconds, 2)} s a curve{lost}"
 
 
 def _climb(asked: PlannedCase, end: Mapping[str, Any] | None) -> Iterator[str]:
@@ -170,9 +173,12 @@ def _climb(asked: PlannedCase, end: Mapping[str, Any] | None) -> Iterator[str]:
         return
     held = "is proved" if end["holds"] else "is the best there is, and not proved"
     yield f"    {end['rung']} {held}: {_share(end['error'])}, {end['by']}"
-    tried = ", ".join(f"{name} at {count} states" for name, count in end["tried"]) or "nothing"
+    tried = (
+        ", ".join(f"{name} at {_counted(count, 'state')}" for name, count in end["tried"])
+        or "nothing"
+    )
     cost = sum(end["seconds"].values())
-    spent = "what that took is not known" if isnan(cost) else f"{cost:.2g} s of the processor"
+    spent = "what that took is not known" if isnan(cost) else f"{plain(cost, 2)} s of the processor"
     yield f"    solved {tried}; {spent}"
 
 
@@ -188,12 +194,14 @@ def _guessed(known: Guess) -> str:
     lost = f", states lost on {100 * known.lost:.0f} % of those nearest" if known.lost else ""
     return (
         f"error {_share(known.median)}, {100 * COVERAGE:g} % of {known.count} like muscles at most "
-        f"{_share(known.high)}{lost}; {known.seconds:.2g} s a curve"
+        f"{_share(known.high)}{lost}; {plain(known.seconds, 2)} s a curve"
     )
 
 
 def _share(error: float) -> str:
-    return f"{100 * error:.2g} %" if isfinite(error) else "not known" if isnan(error) else "lost"
+    return (
+        f"{plain(100 * error, 2)} %" if isfinite(error) else "not known" if isnan(error) else "lost"
+    )
 
 
 def _of_paper(plan: Plan, scene: Scene) -> Iterator[str]:
@@ -211,9 +219,9 @@ def _of_paper(plan: Plan, scene: Scene) -> Iterator[str]:
     yield f"  effects  leaving out, on the paper's muscle and not this one: {', '.join(found)}"
 
 
-def _effects(model: str, case: Case, scene: Scene) -> Iterator[str]:
-    """Which effects are on in a model, and why the others are off."""
-    on = case.active_effects
+def _effects(model: str, cases: Sequence[Case], scene: Scene) -> Iterator[str]:
+    """Which effects are on in a model, in any of some cases, and why the others are off."""
+    on = list(dict.fromkeys(effect for case in cases for effect in case.active_effects))
     carried = [name for name in EFFECTS if name in MODELS[model].effects]
     off = [
         f"{name} ({'by the scene' if name in scene.effects else 'by its switch'})"
@@ -237,4 +245,9 @@ def _cases(plan: Plan, name: str, places: dict[Place, str]) -> Iterator[str]:
 
 
 def _stops(count: int) -> str:
-    return f"{count} stop{'s' * (count != 1)}"
+    return _counted(count, "stop")
+
+
+def _counted(count: int, what: str) -> str:
+    """``1 case``, ``2 cases``."""
+    return f"{count} {what}{'s' * (count != 1)}"

@@ -6,12 +6,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from geometry.braid import Braid
+from geometry.braid import Braid, Kind
 from geometry.muscle import AnyBraid, Muscle
 from geometry.refusal import Refusal
 from solver import net
 from solver.case import DYNAMIC
 from solver.load_path import ZERO_FORCE, LoadPath
+from solver.record import SLEEVED
 from workflow.study import figure_needs, in_time, units
 from workflow.study.contents import StudiedMuscle, Study
 from workflow.study.errors import StudyError, choices, shown
@@ -32,6 +33,7 @@ from workflow.study.schema import (
 from workflow.study.source import Keys, Source
 
 EA = "thread_stiffness"
+FORCES = {"load": "force"}  # in figures the same quantity
 MOST_CURVES = 10_000  # of a scene: more is a typing error in a grid
 SHORTEST, LONGEST = 0.02, 1e4  # length / inner diameter
 THINNEST, THICKEST = 1e-3, 10.0  # wall / inner diameter
@@ -65,13 +67,14 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
             value = "a mapping" if key in ("cycle", "transient", "figure") else value
             yield source.refuse((*keys, key), value, "this key is not used without a path")
         return
-    yield from _figure(source, keys, asked)
+    yield from _figure(study, keys, asked)
     for effect in OF_TIME:
         state = asked.effects.get(effect)
         if state is not None and not asked.in_time:
             allowed = "effects of a curve out of time: this one is only in time"
             yield source.refuse((*keys, "effects", effect), state, allowed)
         made = [study.muscles[name] for name in asked.muscles if name in study.muscles]
+        made = [each for each in made if effect != "memory" or not _remembers(source, each)]
         if state == "on" and any(getattr(each, effect) is None for each in made):
             allowed = "off; a muscle of the scene has none"
             yield source.refuse((*keys, "effects", effect), state, allowed)
@@ -105,13 +108,32 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
         yield from _values(source, keys, asked)
 
 
-def _figure(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
-    """Quantities that a figure shows, which its scene must have."""
-    for axis in ("x", "y"):
-        shown = getattr(asked.figure, axis, None)
-        if shown in TIMED and not asked.in_time:
+def _figure(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:
+    """Quantities that a figure shows, which its scene must have; two of them."""
+    source, figure = study.source, asked.figure
+    if figure is None:
+        return
+    made = [study.muscles[name].muscle for name in asked.muscles if name in study.muscles]
+    sleeved = any(layer.kind is Kind.SLEEVE for muscle in made for layer in muscle.layers)
+    for axis, name in (("x", figure.x), ("y", figure.y)):
+        able = QUANTITIES.get(name or "", asked.models or ())
+        allowed = ""
+        if name in TIMED and not asked.in_time:
             allowed = f"a quantity of states out of time, on an {asked.path} path"
-            yield source.refuse((*keys, "figure", axis), shown, allowed)
+        elif name in SLEEVED and made and not sleeved:
+            allowed = "a quantity of a tube alone; no muscle of the scene has a sleeve"
+        elif asked.models and not set(able) & set(asked.models):
+            allowed = f"a quantity of {', '.join(asked.models)}; this is only by {', '.join(able)}"
+        if allowed:
+            yield source.refuse((*keys, "figure", axis), name, allowed)
+    if asked.in_time and getattr(asked, str(asked.path)) is None:
+        return
+    x, y = figure_needs.axes(asked)
+    if FORCES.get(x, x) == FORCES.get(y, y):
+        axis, other = ("y", x) if figure.y else ("x", y)
+        same = "" if x == y else ", of which a load is one"
+        allowed = f"another quantity than {other}, which the other axis shows{same}"
+        yield source.refuse((*keys, "figure", axis), getattr(figure, axis), allowed)
 
 
 def _frequency(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:
@@ -127,9 +149,14 @@ def _frequency(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:
         yield source.refuse((*keys, "frequency"), low[0], "frequencies > 0 (Hz)")
     for name in asked.muscles if wanted else ():
         made = study.muscles.get(name)
-        if made is not None and made.memory is None:
+        if made is not None and not _remembers(source, made):
             allowed = f"this quantity of rubbers with a memory; {made.material} of {name} has none"
             yield source.refuse((*keys, "quantities"), DYNAMIC, allowed)
+
+
+def _remembers(source: Source, made: StudiedMuscle) -> bool:
+    """Whether the rubber has a memory, or is given one that was refused, which says enough."""
+    return made.memory is not None or source.has(("materials", made.material, "memory"))
 
 
 def _in_time(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:

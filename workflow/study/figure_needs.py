@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from solver.load_path import PathKind
-from workflow.study.schema import Scene
+from workflow.study.schema import FigureEntry, Scene
 
 FOLDER = Path(__file__).parent.parent / "figures"
 EVERY = tuple(PathKind)
@@ -45,6 +45,13 @@ def module(name: str, scene: Scene) -> str:
     if has_own(name) and scene.figure is None:
         return name
     return GENERAL if scene.path is not None else ""
+
+
+def axes(scene: Scene) -> tuple[str, str]:
+    """The quantities that the general drawing of a scene shows, on x and on y."""
+    kind, chosen = PathKind(scene.kind), scene.figure or FigureEntry()
+    swept = "time" if scene.path == "transient" else kind.swept.key
+    return chosen.x or swept, chosen.y or kind.follows
 
 
 def has_own(name: str) -> bool:

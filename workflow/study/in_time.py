@@ -22,6 +22,7 @@ from workflow.study.schema import HELD_KEY, SWEPT_KEY, MemoryEntry, Scene
 from workflow.study.source import Keys, Source
 
 FEWEST_SAMPLES = 4  # of a wave
+WHOLE = 1e-6  # share of a duration by which steps may miss it: thirds are no decimals
 FLAT, LISTED = ("per_decade", "from", "to"), ("shares", "times")
 
 
@@ -75,10 +76,13 @@ def paths(scene: Scene, held: float) -> dict[float, LoadPath]:
         return found
     assert scene.transient is not None
     given = scene.transient
-    count = round(given.duration / given.step)
+    count = max(round(given.duration / given.step), 1)
+    if abs(count * given.step - given.duration) > WHOLE * given.duration:
+        allowed = f"a whole number of steps; {count} of them are {count * given.step:g} s"
+        raise UnsolvableCase("duration", given.duration, allowed)
     if count > MOST_STEPS:
         raise UnsolvableCase("step", given.step, f"at most {MOST_STEPS} steps, not {count}")
-    times = tuple(float(f"{given.step * k:.12g}") for k in range(max(count, 1) + 1))
+    times = tuple(float(f"{given.step * k:.12g}") for k in range(count + 1))
     valve = None
     if given.valve is not None:
         valve = build(Valve, given.valve.model_dump(), UnsolvableCase, "valve")
@@ -148,6 +152,12 @@ def check(source: Source, keys: Keys, scene: Scene) -> Iterator[StudyError]:
         yield source.refuse((*keys, own, "load"), "a table", "none where no load is held")
         wrong = True
     if wrong:
+        return
+    table = entry.load if own == "transient" else None
+    others = [load for load in scene.load or () if table and load != table[0][1]]
+    if table is not None and others:
+        allowed = f"a table that begins with the load that is held at first, {others[0]:g} (N)"
+        yield source.refuse((*keys, own, "load"), list(table[0]), allowed)
         return
     for value in getattr(scene, held):
         try:

@@ -10,6 +10,7 @@ from solver.history import Start
 from workflow.data import dataset, records
 from workflow.plan import explain
 from workflow.plan.plan import read
+from workflow.study import values
 from workflow.study.errors import StudyError
 
 from ..synthetic import MUSCLE
@@ -234,7 +235,7 @@ def test_groups_are_written_and_read(solved, tmp_path):
 
 def test_explain_says_how_and_what_is_remembered(solved):
     text = "\n".join(explain.lines(solved[0]))
-    assert "contraction 0 to 0.2 and back (triangle), 1 cycles of 4, 40 s in 8 steps" in text
+    assert "contraction 0 to 0.2 and back (triangle), 1 cycle of 4, 40 s in 8 steps" in text
     assert "one: 4 branches of 0.01 to 10 s, 24 % of the long-term stiffness" in text
     assert "of the supply through a valve, 0.01 s in steps of 0.002 s, mass 5 kg" in text
     assert text.count("nothing is promised") == 3
@@ -321,3 +322,45 @@ def test_what_is_refused(tmp_path, old, new, said):
     with pytest.raises(StudyError) as refused:
         plan_of(tmp_path, old, new)
     assert said in str(refused.value), str(refused.value)
+
+
+REFUSED = [
+    # what stands in the study, what in its place, and what is said of it
+    ("duration: 0.01", "duration: 0.011", "duration = 0.011 is refused", "6 of them are 0.012 s"),
+    ("load: [49]", "load: [50]", "transient.load = [0.0, 49.0] is refused", "at first, 50 (N)"),
+    ("per_decade: 0.06", "per_decades: 0.06", "memory.per_decades is no key", "per_decade, from"),
+    ("path: cycle", "path: cycle\n    figure: {x: force, y: force}", "figure.y = ", "than force"),
+    ("path: cycle", "path: cycle\n    figure: {x: force}", "figure.x = ", "than force"),
+    ("path: cycle", "path: cycle\n    figure: {x: load, y: force}", "figure.y", "a load is one"),
+    ("path: cycle", "path: cycle\n    figure: {y: contact_pressure}", "figure.y", "has a sleeve"),
+    (
+        "    cycle: {held: pressure",
+        "    figure: {y: force}\n    # {held: pressure",
+        "cycle",
+        "given",
+    ),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "refused", "allowed"), REFUSED)
+def test_what_says_nothing_is_refused_where_it_stands(tmp_path, old, new, refused, allowed):
+    text = STUDY.replace(old, new, 1)
+    assert text != STUDY
+    (tmp_path / "study.yaml").write_text(text)
+    with pytest.raises(StudyError) as error:
+        read(tmp_path / "study.yaml")
+    assert refused in str(error.value)
+    assert allowed in str(error.value)
+
+
+def test_a_refused_memory_is_said_once(tmp_path):
+    with pytest.raises(StudyError) as error:
+        plan_of(tmp_path, "per_decade: 0.06", "per_decade: -1")
+    assert str(error.value).count("is refused") == 1
+
+
+def test_numbers_for_people_have_no_exponent(tmp_path):
+    assert [values.plain(v, 2) for v in (130, 0.00002, 1.0)] == ["130", "0.00002", "1"]
+    said = list(explain.lines(plan_of(tmp_path)))
+    assert "curve: 1 case" in said
+    assert "loops: 4 cases" in said
