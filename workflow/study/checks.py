@@ -74,7 +74,6 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
             allowed = "effects of a curve out of time: this one is only in time"
             yield source.refuse((*keys, "effects", effect), state, allowed)
         made = [study.muscles[name] for name in asked.muscles if name in study.muscles]
-        made = [each for each in made if effect != "memory" or not _remembers(source, each)]
         if state == "on" and any(getattr(each, effect) is None for each in made):
             allowed = "off; a muscle of the scene has none"
             yield source.refuse((*keys, "effects", effect), state, allowed)
@@ -149,14 +148,9 @@ def _frequency(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:
         yield source.refuse((*keys, "frequency"), low[0], "frequencies > 0 (Hz)")
     for name in asked.muscles if wanted else ():
         made = study.muscles.get(name)
-        if made is not None and not _remembers(source, made):
+        if made is not None and made.memory is None:
             allowed = f"this quantity of rubbers with a memory; {made.material} of {name} has none"
             yield source.refuse((*keys, "quantities"), DYNAMIC, allowed)
-
-
-def _remembers(source: Source, made: StudiedMuscle) -> bool:
-    """Whether the rubber has a memory, or is given one that was refused, which says enough."""
-    return made.memory is not None or source.has(("materials", made.material, "memory"))
 
 
 def _in_time(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:

@@ -105,6 +105,8 @@ def _of(source: Source, findings: Findings | None) -> Study:
     for name in [name for name in file.muscles if name not in source.groups]:
         with found.gathering():
             made = resolved.built(name)
+            if made.material not in memories and file.materials[made.material].memory is not None:
+                raise AlreadyRefused
             muscles[name] = replace(made, memory=memories.get(made.material))
     study = Study(
         source=source,
