@@ -135,7 +135,7 @@ def smoke(folder, tmp_path, *arguments):
     made = Project.at(folder)
     status, said = made.run(*arguments, "study=smoke.yaml", program=run, path=program.parent)
     assert status == 1, said
-    assert "2 cases failed" in said
+    assert "2 cases failed" in said, said
     results = made.results().items()
     return said, {
         name: text for name, text in results if not {"logs", "solved"} & set(Path(name).parts)

@@ -268,12 +268,17 @@ def _climb(key: str, asked: Planned, limits: Limits) -> int:
 
 
 def _mesh(asked: Planned, limits: Limits) -> int:
-    """Make a mesh, or write why there can be none."""
+    """Make a mesh, or write why there can be none.
+
+    Another job of a cluster may make the same one: neither takes it away from under the other.
+    """
+    if not why_meshed(asked):
+        return 0
     spec = asked.case.mesh_spec()
     assert asked.mesh is not None
     assert spec is not None
     path = MESHES / asked.mesh
-    damage.remove(path)  # whatever comes, it is not right
+    damage.make_room(path)
     try:
         why = attempt.why_not(lambda: make(json.loads(spec), path), limits.wall_time, limits.memory)
         if why:
@@ -288,11 +293,8 @@ def _mesh(asked: Planned, limits: Limits) -> int:
 def _solve(key: str, asked: Planned, limits: Limits) -> int:
     """Solve a case and write its record."""
     start, used = time.monotonic(), time.process_time()
-    damage.remove(_record(key))  # whatever comes, it is not right
+    damage.make_room(_record(key))
     mesh = MESHES / asked.mesh if asked.mesh else None
-    if mesh and not mesh.is_file():
-        say(f"there is no mesh ({asked.label})")
-        return 1
     job = Job(
         case=Case.from_json(asked.case.canonical()),  # without what its model does not read
         mesh=mesh,
@@ -302,8 +304,10 @@ def _solve(key: str, asked: Planned, limits: Limits) -> int:
         limits=limits,
         code=_code(asked.case),
     )
-    if why := job.run(start, used):
+    if why := "there is no mesh" if why_meshed(asked) else job.run(start, used):
         say(f"{why} ({asked.label})")
+        if why_solved(key, asked):  # else another job has solved it
+            damage.remove(_record(key))
     return 1 if why else 0
 
 

@@ -52,6 +52,12 @@ def remove(path: Path) -> None:
         path.unlink(missing_ok=True)
 
 
+def make_room(path: Path) -> None:
+    """Delete a folder that stands in the place of a result; a file can be replaced."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+
+
 def report(delete: bool) -> bool:
     """Print what is not as it was written; whether all is.
 

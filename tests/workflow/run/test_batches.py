@@ -13,7 +13,7 @@ from solver.case import Case
 from solver.freefem import Limits
 from solver.load_path import LoadPath
 from workflow.analyses.analysis import AnalysisCase
-from workflow.run import batches
+from workflow.run import batches, made, pool
 from workflow.study.folders import CASES, COST, MESHES
 
 LIMITS = Limits(wall_time=60, memory=4000)
@@ -70,6 +70,42 @@ def test_a_record_of_other_sources_is_solved_again(cases, tmp_path):
     record.write(CASES / f"{key}.h5", case, replace(solution, code="0" * 16))
     assert batches.to_solve(cases) == {key: "its sources have changed"}
     assert list(solve(cases, tmp_path)[1]) == [key]
+
+
+def test_what_another_job_has_made_meanwhile_stays(cases, tmp_path, monkeypatch):
+    """Two jobs of a cluster share meshes; each has looked what is missing before the other ends."""
+    run, between = pool.run, []
+
+    def after_the_other(*arguments):
+        monkeypatch.setattr(pool, "run", run)
+        (tmp_path / "other").mkdir()
+        assert solve(cases, tmp_path / "other")[0] == 0
+        between.extend(MESHES.iterdir())
+        between.append(between[0].stat())
+        return run(*arguments)
+
+    monkeypatch.setattr(pool, "run", after_the_other)
+    assert solve(cases, tmp_path)[0] == 0
+    mesh, before = between
+    assert mesh.stat() == before
+
+
+def test_a_case_without_its_mesh_is_not_solved(cases, tmp_path, monkeypatch, capfd):
+    """The mesh of before is none, though a file is there."""
+    solve(cases, tmp_path)
+    (key,), (mesh,) = keys_of(cases, "membrane"), MESHES.iterdir()
+    made.note(mesh, "0" * 16)
+    (CASES / f"{key}.h5").unlink()
+    monkeypatch.setattr(batches, "make", lambda spec, path: os.kill(os.getpid(), 9))
+    assert solve(cases, tmp_path) == (1, {mesh.name: "not_solved", key: "not_solved"})
+    assert "there is no mesh (the membrane)" in capfd.readouterr().err
+
+
+def test_a_folder_in_the_place_of_a_result_gives_way(cases, tmp_path):
+    (key,) = keys_of(cases, "membrane")
+    (CASES / f"{key}.h5" / "inner").mkdir(parents=True)
+    assert solve(cases, tmp_path)[0] == 0
+    assert (CASES / f"{key}.h5").is_file()
 
 
 def test_a_case_that_is_killed_or_broken_loses_itself_only(cases, tmp_path, monkeypatch, capfd):
