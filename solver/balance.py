@@ -8,6 +8,7 @@ the error of the steps of time, and falls by four when those are halved.
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.readable import plain
 from solver.case import Case
 
 MOST = 0.02  # of what a cycle dissipates
@@ -34,7 +35,7 @@ def unbalanced(case: Case, states: dict[str, NDArray[np.float64]]) -> str:
     for number, (off, lost) in enumerate(errors(case, states), 1):
         if (case.remembers or case.rubs) and not abs(off) <= MOST * lost:
             return (
-                f"steps too long in time: in cycle {number} work differs by {abs(off):.2g} N mm "
-                f"from what is stored and dissipated, of {lost:.3g} N mm; more samples"
+                f"steps too long in time: in cycle {number} work differs by {plain(abs(off), 2)} N "
+                f"mm from what is stored and dissipated, of {plain(lost, 3)} N mm; more samples"
             )
     return ""

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from geometry.readable import plain
 from solver.case import Case
 from solver.record import Solution
 from solver.status import Flag
@@ -37,8 +38,8 @@ def marked(case: Case, solution: Solution) -> Solution:
         per_width = max(abs(added[k]) / slack.width_of(case.thread), abs(rate[k]))
         narrower = MARGIN * MOST * size / per_width * slack.width / slack.width_of(case.thread)
         said = (
-            f"the smoothing of slack threads adds {added[k]:.2g} N, "
-            f"{100 * abs(added[k]) / size:.2g} % of what the curve bears; "
+            f"the smoothing of slack threads adds {plain(added[k], 2)} N, "
+            f"{plain(100 * abs(added[k]) / size, 2)} % of what the curve bears; "
             f"a slack.width of {_rounded_down(narrower):g} brings that below {100 * MOST:g} %"
         )
         flags[k] = flags[k] | {Flag.SMOOTHED}

@@ -26,6 +26,7 @@ from typing import Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.readable import plain
 from solver.case import Case
 from solver.effects import Rubber, ThreadLaw
 from solver.load_path import CONTRACTION_LIMITS, Control
@@ -277,7 +278,7 @@ def judge(
             states[name][-1] = 0.0
     if states["pressure"][-1] == 0 and abs(force[-1]) > 10 * SHARE * np.nanmax(np.abs(force)):
         return status, (
-            f"its force of {force[-1]:.3g} N is what the smoothing of the slack law adds to a "
-            "muscle without pressure"
+            f"its force of {plain(force[-1], 3)} N is what the smoothing of the slack law adds to "
+            "a muscle without pressure"
         )
     return status, ""

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from geometry.readable import plain
 from geometry.refusal import Refusal
 from solver.case import Case
 from solver.load_path import CONTRACTION_LIMITS, LoadPath, PathKind
@@ -189,7 +190,7 @@ class _Question:
                 raise StudyError(
                     f"no pressure up to {HIGHEST:g} MPa lets {self.name} pull "
                     f"{known[FORCE]:g} N at {100 * known[CONTRACTION]:g} %; "
-                    f"without a load it gets shorter by {100 * most:.3g} % at most"
+                    f"without a load it gets shorter by {plain(100 * most, 3)} % at most"
                 )
         return {**known, asked: value}
 
@@ -200,15 +201,15 @@ class _Question:
             free = self.quick.contraction(pressure, 0.0)
             if known[CONTRACTION] > free:
                 return (
-                    f"at {pressure:g} MPa {name} gets shorter by about {100 * free:.2g} % by "
+                    f"at {pressure:g} MPa {name} gets shorter by about {plain(100 * free, 2)} % by "
                     f"itself; at {100 * known[CONTRACTION]:g} % it would have to be pushed"
                 )
         if CONTRACTION not in known:
             blocked = self.quick.force(pressure, 0.0)
             if known[FORCE] > blocked:
                 return (
-                    f"at {pressure:g} MPa {name} pulls about {blocked:.3g} N at its length at "
-                    f"rest; {known[FORCE]:.4g} N would draw it out further than it goes"
+                    f"at {pressure:g} MPa {name} pulls about {plain(blocked, 3)} N at its length "
+                    f"at rest; {plain(known[FORCE], 4)} N would draw it out further than it goes"
                 )
             if known[FORCE] < 0:
                 return f"{name} would have to be pushed with {-known[FORCE]:g} N, and gives way"
@@ -376,14 +377,18 @@ class _Question:
             said = "it does not come here by itself: it has to be pushed"
             free = self.quick.contraction(pressure, 0.0)
             if 0 < free < contraction:
-                said += f"; at {pressure:g} MPa it gets shorter by about {100 * free:.2g} % alone"
+                said += (
+                    f"; at {pressure:g} MPa it gets shorter by about {plain(100 * free, 2)} % alone"
+                )
             from_here = self.quick.pressure(contraction, 0.0)
             if from_here > pressure:
-                said += f"; at {100 * contraction:g} % it pulls from about {from_here:.2g} MPa on"
+                said += (
+                    f"; at {100 * contraction:g} % it pulls from about {plain(from_here, 2)} MPa on"
+                )
             return [said]
         if contraction < 0:
             blocked = self.quick.force(pressure, 0.0)
-            beside = f"; at its length at rest it pulls about {blocked:.3g} N"
+            beside = f"; at its length at rest it pulls about {plain(blocked, 3)} N"
             return ["it is longer than at rest" + (beside if blocked < found[FORCE] else "")]
         return []
 
@@ -399,14 +404,20 @@ def lines(answer: Answer) -> list[str]:
     shown = f"± {_size(answer.asked, answer.error)}" if math.isfinite(answer.error) else ""
     rows = [
         (answer.asked, f"{_text(answer, answer.asked)}  {shown}".rstrip()),
-        ("stroke", f"{answer.stroke:.4g} mm, to a length of {answer.length:.4g} mm"),
-        ("stiffness", f"{answer.stiffness:.4g} N/mm at constant pressure"),
-        ("force by pressure", f"{answer.force_by_pressure / 10:.4g} N/bar at constant length"),
-        ("inner diameter", f"{answer.inner_diameter:.4g} mm at mid-length"),
-        ("outer diameter", f"{answer.outer_diameter:.4g} mm at its widest"),
-        ("volume inside", f"{answer.volume / 1000:.4g} ml"),
-        ("load of a thread", f"{answer.thread_force:.3g} N{_share(answer)}"),
-        ("rubber stretched to", f"{answer.rubber_stretch:.3g} times its length at most"),
+        (
+            "stroke",
+            f"{plain(answer.stroke, 4)} mm, to a length of {plain(answer.length, 4)} mm",
+        ),
+        ("stiffness", f"{plain(answer.stiffness, 4)} N/mm at constant pressure"),
+        (
+            "force by pressure",
+            f"{plain(answer.force_by_pressure / 10, 4)} N/bar at constant length",
+        ),
+        ("inner diameter", f"{plain(answer.inner_diameter, 4)} mm at mid-length"),
+        ("outer diameter", f"{plain(answer.outer_diameter, 4)} mm at its widest"),
+        ("volume inside", f"{plain(answer.volume / 1000, 4)} ml"),
+        ("load of a thread", f"{plain(answer.thread_force, 3)} N{_share(answer)}"),
+        ("rubber stretched to", f"{plain(answer.rubber_stretch, 3)} times its length at most"),
     ]
     width = max(len(name) for name, _ in rows) + 2
     said = [f"{answer.muscle} at {given}, by {answer.model}:"]
@@ -448,15 +459,17 @@ def _text(answer: Answer, kind: str) -> str:
     """One of the three quantities with its unit."""
     value: float = getattr(answer, kind)
     if kind == CONTRACTION:
-        return f"{100 * value:.4g} %"
-    return f"{value:.4g} {UNIT[kind]}"
+        return f"{plain(100 * value, 4)} %"
+    return f"{plain(value, 4)} {UNIT[kind]}"
 
 
 def _size(kind: str, error: float) -> str:
     """An error, in the unit that ``_text`` has."""
-    return f"{100 * error:.2g} %" if kind == CONTRACTION else f"{error:.2g} {UNIT[kind]}"
+    return (
+        f"{plain(100 * error, 2)} %" if kind == CONTRACTION else f"{plain(error, 2)} {UNIT[kind]}"
+    )
 
 
 def _share(answer: Answer) -> str:
     share = answer.thread_share
-    return f", {100 * share:.2g} % of its strength" if math.isfinite(share) else ""
+    return f", {plain(100 * share, 2)} % of its strength" if math.isfinite(share) else ""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.readable import plain
 from solver.case import Case
 from solver.load_path import LoadPath, PathKind
 from solver.models import MODELS
@@ -128,7 +129,11 @@ def sheet(
     weight = HALF * float(curve.force(0.0)) if load is None else load
     outline, outline_at = _outline(curve)
     last = free if math.isfinite(free) else float(curve.contraction[-1])
-    ends = "free contraction" if math.isfinite(free) else f"{100 * last:.4g} %, as far as it goes"
+    ends = (
+        "free contraction"
+        if math.isfinite(free)
+        else f"{plain(100 * last, 4)} %, as far as it goes"
+    )
     how = f"(p dV - dU - L int F de) / p dV, from the initial length to {ends}"
     rows = (
         *_forces(curve, free, weight, given),
@@ -147,7 +152,7 @@ def _forces(curve: Curve, free: float, load: float, given: bool) -> Iterator[Row
     at = curve.contraction_of(load)
     errors = error(curve.case, curve.solution, "force")
     mesh = float(np.max(errors[np.isfinite(errors)])) if np.isfinite(errors).any() else math.nan
-    off = f"the mesh is off by {mesh:.2g} N at most" if math.isfinite(mesh) else ""
+    off = f"the mesh is off by {plain(mesh, 2)} N at most" if math.isfinite(mesh) else ""
     yield Row("blocked force", float(curve.force(0.0)), "N", "; ".join(filter(None, ["F(0)", off])))
     lacking = "" if math.isfinite(free) else "no state of zero force was found"
     yield Row("free contraction", 100 * free, "%", lacking or "F = 0")
@@ -327,6 +332,8 @@ def warnings(sheets: Iterable[Sheet]) -> list[str]:
 
 def _line(row: Row, width: int) -> str:
     value = (
-        f"{row.value:.4g} {row.unit if row.unit != '1' else ''}" if row.value == row.value else ""
+        f"{plain(row.value, 4)} {row.unit if row.unit != '1' else ''}"
+        if row.value == row.value
+        else ""
     )
     return f"  {row.name:<{width}}{value.strip() or 'not known':<14}{row.note}".rstrip()

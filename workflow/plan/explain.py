@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import isfinite, isnan
 from typing import Any
 
+from geometry.readable import plain
 from solver.case import Case
 from solver.effects import EFFECTS
 from solver.load_path import PathKind
@@ -15,7 +16,6 @@ from workflow.plan.model_choice import Choice, Estimate
 from workflow.plan.plan import Place, Plan, PlannedCase
 from workflow.plan.promise import Promise
 from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
-from workflow.study.values import plain
 
 Outcomes = Callable[[str], Mapping[str, Any] | None]  # how a climb has ended, by its key
 

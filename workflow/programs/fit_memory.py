@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from geometry.readable import plain
 from solver.history import Start
 from workflow.programs import add_study
 from workflow.study.errors import StudyError
@@ -64,7 +65,7 @@ def lines(found: "MemoryFit", model: str, material: str) -> Iterator[str]:
     )
     span = found.measured.max() - found.measured.min()
     yield (
-        f"left in the mean square: {found.residual:.3g} N, "
+        f"left in the mean square: {plain(found.residual, 3)} N, "
         f"{100 * found.residual / span if span else 0:.2g} % of the range of the forces"
     )
     shown = ", ".join(f"{name} {value:.4g}" for name, value in found.curve.items())

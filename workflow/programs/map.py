@@ -6,6 +6,7 @@ Without a name all maps of the study file are made.
 
 import argparse
 
+from geometry.readable import plain
 from workflow.programs import add_entries, entries, results_of
 from workflow.study.study import load
 
@@ -31,8 +32,8 @@ def run(given: argparse.Namespace) -> int:
         html_page.write_beside(output, f"Map {name}", "map", rows=False)  # of thousands
         print(
             f"{name}: {found.map.pressure.size} pressures, {found.map.contraction.size} "
-            f"contractions; force within {found.error:.2g} N, near the threshold "
-            f"{found.error_near:.2g} N, pressure within {found.error_inverse:.2g} MPa"
+            f"contractions; force within {plain(found.error, 2)} N, near the threshold "
+            f"{plain(found.error_near, 2)} N, pressure within {plain(found.error_inverse, 2)} MPa"
         )
         if not compiled:
             print(

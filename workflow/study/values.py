@@ -8,8 +8,6 @@ from decimal import Decimal
 from itertools import pairwise
 from typing import TypeGuard
 
-import numpy as np
-
 from geometry.refusal import is_number
 
 MOST = 1000  # values of one factor: more is a typing error in the step
@@ -77,9 +75,3 @@ def _grid(given: Mapping[str, object]) -> tuple[float, ...]:
     if count >= MOST:
         raise ValueError(f"a grid of at most {MOST} values, not {int(count) + 1}")
     return tuple(float(start + step * k) for k in range(int(count) + 1))
-
-
-def plain(value: float, digits: int) -> str:
-    """A number for people, of so many digits at most and never with an exponent: 12350, 0.00002."""
-    shown = np.format_float_positional(value, digits, unique=False, fractional=False, trim="-")
-    return str(shown)

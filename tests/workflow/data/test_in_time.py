@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from geometry.readable import plain
 from solver import record
 from solver.friction import Friction
 from solver.history import Start
 from workflow.data import dataset, records
 from workflow.plan import explain
 from workflow.plan.plan import read
-from workflow.study import values
 from workflow.study.errors import StudyError
 
 from ..synthetic import MUSCLE
@@ -360,7 +360,8 @@ def test_a_refused_memory_is_said_once(tmp_path):
 
 
 def test_numbers_for_people_have_no_exponent(tmp_path):
-    assert [values.plain(v, 2) for v in (130, 0.00002, 1.0)] == ["130", "0.00002", "1"]
+    assert [plain(v, 2) for v in (130, 0.00002, 1.0)] == ["130", "0.00002", "1"]
+    assert [plain(v, 4) for v in (12345.6, -1e6, 3e-9, 0.0)] == ["12350", "-1000000", "3e-09", "0"]
     said = list(explain.lines(plan_of(tmp_path)))
     assert "curve: 1 case" in said
     assert "loops: 4 cases" in said

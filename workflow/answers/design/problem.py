@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from geometry.braid import Braid
 from geometry.muscle import Muscle
+from geometry.readable import plain
 from geometry.refusal import Refusal
 from solver.case import Case
 from solver.load_path import LoadPath, PathKind
@@ -67,7 +68,7 @@ class Requirement:
         """``force at 5 %, 0.4 MPa: at least 500 N``."""
         turned = -1 if self.measure.startswith("-") else 1
         sign = "at least" if self.sense * turned > 0 else "at most"
-        return f"{self.what}: {sign} {turned * self.limit:.4g} {self.unit}".rstrip()
+        return f"{self.what}: {sign} {plain(turned * self.limit, 4)} {self.unit}".rstrip()
 
     def value(self, measures: Measures) -> float:
         """What it is, as a user would say it."""
@@ -333,7 +334,7 @@ class Problem:
         unit = {"air": "Nl", "force": "N", "work": "J", "mass": "g"}.get(kind, "mm")
         value = -value if measure.startswith("-") else value
         at = f" at {100 * float(numbers[1]):g} %" if len(numbers) > 1 else ""
-        return f"{kind.replace('_', ' ')}{at}: {value:.4g} {unit}"
+        return f"{kind.replace('_', ' ')}{at}: {plain(value, 4)} {unit}"
 
 
 def _frees(given: RequirementEntry) -> bool:

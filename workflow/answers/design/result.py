@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from geometry.files import atomic_write
+from geometry.readable import plain
 from workflow.answers import sheet, sheet_files
 from workflow.answers.design.problem import TRUTH, Problem
 from workflow.answers.design.search import MISSED, Found, Missed, Trial, looked_for
@@ -116,12 +117,14 @@ def report(found: Found) -> list[str]:
     for requirement in [*problem.requirements, *([found.bound] if found.bound else [])]:
         value = requirement.value(best.measures)
         decides = "  <- decides" if requirement.violation(best.measures) > -ACTIVE else ""
-        lines.append(f"  {requirement.name}: {requirement.text}, is {value:.5g}{decides}")
+        lines.append(f"  {requirement.name}: {requirement.text}, is {plain(value, 5)}{decides}")
     for key, (low, high) in found.flat.items():
         at = best.x[problem.numbers.index(key)]
         ends = problem.bounds[problem.numbers.index(key)]
         edge = ", at the end of its range" if np.isclose(at, ends).any() else ""
-        lines.append(f"  {key} {low:.4g} to {high:.4g} costs at most 1 % of the objective{edge}")
+        lines.append(
+            f"  {key} {plain(low, 4)} to {plain(high, 4)} costs at most 1 % of the objective{edge}"
+        )
     return lines
 
 
@@ -131,7 +134,7 @@ def _why(found: Found) -> list[str]:
     if found.trials:
         worst = min(trial.worst for trial in found.trials)
         count = len(found.trials)
-        lines = [f"  the nearest of {count} by the {TRUTH} misses by {100 * worst:.2g} %"]
+        lines = [f"  the nearest of {count} by the {TRUTH} misses by {plain(100 * worst, 2)} %"]
     if not found.missed:
         return [*lines, "  no few of them stand in the way: look at the ranges of what is free"]
     return lines + [_said(missed, first=k == 0) for k, missed in enumerate(found.missed)]
@@ -140,8 +143,8 @@ def _why(found: Found) -> list[str]:
 def _said(missed: Missed, *, first: bool) -> str:
     """One set of requirements that stands in the way."""
     each = [
-        f"{r.name} ({r.text}; {missed.measures[r.measure]:.4g} can be had, missed by "
-        f"{100 * max(r.violation(missed.measures), 0):.2g} %)"
+        f"{r.name} ({r.text}; {plain(missed.measures[r.measure], 4)} can be had, missed by "
+        f"{plain(100 * max(r.violation(missed.measures), 0), 2)} %)"
         for r in missed.requirements
     ]
     start = "without" if first else "or without"

@@ -9,6 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from geometry.files import atomic_write
+from geometry.readable import plain
 from workflow.answers.maps import fmu
 from workflow.answers.maps.build import NEAR, Checked
 from workflow.answers.maps.table import FORCE, UNITS, Map
@@ -111,6 +112,6 @@ def draw(found: Checked) -> Figure:
     ax.axhline(0, color="black", linewidth=0.7)
     ax.set_xlabel("contraction [%]")
     ax.set_ylabel("force [N]")
-    ax.set_title(f"x: solved for alone, within {found.error:.2g} N")
+    ax.set_title(f"x: solved for alone, within {plain(found.error, 2)} N")
     percent(ax.xaxis, 0.05)
     return figure

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from geometry.files import atomic_write
+from geometry.readable import plain
 from workflow.answers.maps.table import FORCE, Map
 from workflow.figures import style
 from workflow.figures.style import FULL, SERIES, labelled, legend, panels
@@ -97,7 +98,9 @@ def report(name: str, pair: Pair, entry: PairEntry) -> list[str]:
         said = "no angle without a torque within the maps"
         if math.isfinite(rest):
             stiff = float(pair.stiffness(rest, pressure, against))
-            said = f"rests at {math.degrees(rest):.3g} degrees, {stiff:.4g} N m/rad stiff"
+            said = (
+                f"rests at {plain(math.degrees(rest), 3)} degrees, {plain(stiff, 4)} N m/rad stiff"
+            )
         lines.append(f"{name} at {pressure:g} and {against:g} MPa: {said}")
     return lines
 
