@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.plain_hdf5 import get
+from solver.plain_hdf5 import get, type_of
 
+DOUBLE = np.dtype(float)
 PLAIN = (0, 1)  # H5D_COMPACT, H5D_CONTIGUOUS
 
 
@@ -24,8 +25,9 @@ class Declared:
 
     def attributes(self, names: Iterable[str]) -> None:
         """Raise ValueError, or KeyError, unless these attributes of the file are single values."""
+        attributes = self.file.attrs
         for name in names:
-            if self.file.attrs.get_id(name).shape != ():
+            if attributes.get_id(name).shape != ():
                 raise ValueError(f"the attribute {name} is no single value")
 
     def child(self, group: Any, name: str) -> Any:
@@ -44,21 +46,22 @@ class Declared:
 
         self._here(group, name)
         data = h5d.open(group.id, name.encode())
-        found, dtype = data.shape, data.dtype
+        found, stored = data.shape, data.get_type()
         if len(found) != len(shape) or any(
             allowed not in (None, length) for allowed, length in zip(shape, found, strict=True)
         ):
             raise ValueError(f"{name} has the shape {found}, not {shape}")
-        if dtype.kind != kind or (kind == "f" and dtype != np.float64):
+        dtype = DOUBLE if kind == "f" and stored.equal(type_of(DOUBLE)) else stored.dtype
+        if dtype.kind != kind or (kind == "f" and dtype != DOUBLE):
             raise ValueError(f"{name} holds {dtype}")
-        stored = data.get_create_plist()
-        contiguous = stored.get_layout() in PLAIN
-        if not contiguous or stored.get_nfilters() or stored.get_external_count():
+        made = data.get_create_plist()
+        contiguous = made.get_layout() in PLAIN
+        if not contiguous or made.get_nfilters() or made.get_external_count():
             raise ValueError(f"{name} is not stored plainly")
         self.left -= math.prod(found) * dtype.itemsize
         if self.left < 0:
             raise ValueError(f"{name} of shape {found} is more than the file holds")
-        return get(data)
+        return get(data, found, dtype)
 
     def _here(self, group: Any, name: str) -> None:
         """Raise ValueError, or KeyError, unless what a group holds by a name is in this file."""

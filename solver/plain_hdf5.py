@@ -20,20 +20,23 @@ def put(group: Any, name: str, value: Any, attributes: Mapping[str, str]) -> Non
     array = np.asarray(value, dtype=_text() if texts else None, order="C")
     plain, inside = _properties()
     data = h5d.create(
-        group.id, name.encode(), _kind(array.dtype), _space(array.shape), plain, inside
+        group.id, name.encode(), type_of(array.dtype), _space(array.shape), plain, inside
     )
     data.write(h5s.ALL, h5s.ALL, array)
     for key, said in attributes.items():
-        attribute = h5a.create(data, key.encode(), _kind(_text()), _space(()))
+        attribute = h5a.create(data, key.encode(), type_of(_text()), _space(()))
         attribute.write(np.array(said, dtype=_text()))
 
 
-def get(data: Any) -> NDArray[Any]:
-    """All that a low-level dataset of plain numbers or bytes holds."""
+def get(data: Any, shape: tuple[int, ...], dtype: np.dtype[Any]) -> NDArray[Any]:
+    """All that a low-level dataset of doubles or bytes holds, whose shape and type are these.
+
+    To ask the dataset for them again, or HDF5 for the type of each array, is a third of reading it.
+    """
     from h5py import h5s
 
-    found = np.empty(data.shape, data.dtype)
-    data.read(h5s.ALL, h5s.ALL, found)
+    found = np.empty(shape, dtype)
+    data.read(h5s.ALL, h5s.ALL, found, type_of(dtype) if dtype.kind == "f" else None)
     return found
 
 
@@ -45,7 +48,8 @@ def _text() -> Any:
 
 
 @cache
-def _kind(dtype: Any) -> Any:
+def type_of(dtype: Any) -> Any:
+    """HDF5's type for one of numpy."""
     from h5py import h5t
 
     return h5t.py_create(dtype, logical=True)

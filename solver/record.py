@@ -251,23 +251,24 @@ def _read(file: Any, size: int) -> tuple[Case, Solution]:
     """Case and solution of an open file; raises ValueError and others if it is no record."""
     declared = Declared(file, size)
     declared.attributes(PASSPORT)
-    found = file.attrs["filetype"], file.attrs["layout"]
+    attributes = file.attrs
+    found = attributes["filetype"], attributes["layout"]
     if found != (FILETYPE, LAYOUT):
         raise ValueError(f"expected {FILETYPE}, layout {LAYOUT}; found {found}")
-    case = Case.from_json(file.attrs["case"])
-    if case.key != file.attrs["key"]:
-        raise ValueError(f"its case is {case.key}, its key {file.attrs['key']}")
+    case = Case.from_json(attributes["case"])
+    if case.key != attributes["key"]:
+        raise ValueError(f"its case is {case.key}, its key {attributes['key']}")
     states, shape = declared.child(file, "states"), (case.path.states,)
 
     def texts(name: str) -> list[str]:
         return [text.decode() for text in declared.dataset(states, name, "S", shape)]
 
     return case, Solution(
-        status=CaseStatus(file.attrs["status"]),
-        reason=file.attrs["reason"],
-        log=file.attrs["log"],
-        unknowns=int(file.attrs["unknowns"]),
-        code=file.attrs["code"],
+        status=CaseStatus(attributes["status"]),
+        reason=attributes["reason"],
+        log=attributes["log"],
+        unknowns=int(attributes["unknowns"]),
+        code=attributes["code"],
         states={name: declared.dataset(states, name, "f", shape) for name in variables(case)},
         state_status=[StateStatus(text) for text in texts("status")],
         flags=[frozenset(map(Flag, text.split())) for text in texts("flags")],
