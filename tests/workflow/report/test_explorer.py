@@ -112,6 +112,7 @@ scenes:
     quantities: [stress]
 """
 )
+MEASURED = (("pressure", "MPa"), ("contraction", "1"), ("force", "N"))
 CORNERS = np.array([[10, 0, 15, 0], [12, 0, 16.5, 0], [10, 5, 15, 4]], dtype=float)
 
 
@@ -158,7 +159,18 @@ def test_downloaded_numbers_are_those_of_the_dataset(shown, made, tmp_path):
     table = made[1].joined()
     expected = table[(table["path"] == "isobaric") & (table["muscle"] == "one")]
     expected = expected[expected["variant"] == "default"]
+    points = [row for row in rows if row["model"] == "measured"]
+    rows = [row for row in rows if "measured" not in row["model"]]
     assert len(rows) == len(expected) > 20
+    own = reference.musclesim()
+    found = [
+        [float(row[f"{name} [{unit}]"]) for name, unit in MEASURED]
+        for row in points
+        if row["variant"] == own.label and row["muscle"] == "one"
+    ]
+    held = [point for point in own.points.tolist() if point[0] in (0.2, 0.3)]
+    np.testing.assert_allclose(sorted(found), sorted(held), rtol=1e-6)
+    assert {row["volume [mm^3]"] for row in points} == {""}
     for name, unit in (("force", "N"), ("contraction", "1"), ("volume", "mm^3")):
         found = [float(row[f"{name} [{unit}]"] or "nan") for row in rows]
         np.testing.assert_allclose(found, expected[name], rtol=1e-6)

@@ -145,10 +145,10 @@ function measuredOf(muscles, curves) {
   return DATA.measured.filter((m) => muscles.includes(m.muscle)).flatMap((m) =>
     choice.held.map((value) => {
       const at = (rows) => rows.filter((row) => Math.abs(row[held] - value) <= 1e-6 * Math.max(1, Math.abs(value)))
-        .map((row) => ({ x: row[x], y: row[y] }));
+        .map((row) => ({ x: row[x], y: row[y], row }));
       const own = curves.find((c) => c.muscle === m.muscle && c.held === value);
       return {
-        label: `${m.label}, ${digits(value)} ${unitOf(DATA.paths[choice.path].held)}`, source: m.label,
+        muscle: m.muscle, label: `${m.label}, ${digits(value)} ${unitOf(DATA.paths[choice.path].held)}`, source: m.label,
         colour: own ? own.colour : colour("--ink"), points: at(m.points), suspect: at(m.suspect), between: at(m.between[choice.path] ?? []),
       };
     }).filter((m) => m.points.length || m.suspect.length || m.between.length))
@@ -422,6 +422,7 @@ function valueAt(curve, x) {
 
 // --- what can be taken away -------------------------------------------------------------------------
 
+/** The states of what is drawn, and below them the measured points, whose model says so and whose variant is their source. */
 function csv() {
   const quoted = (value) => (/[",\n]/.test(String(value)) ? `"${String(value).replaceAll('"', '""')}"` : String(value ?? ""));
   const { columns, errors, point, status, flags, note } = DATA.states;
@@ -431,7 +432,12 @@ function csv() {
   const rows = panels.flatMap((panel) => panel.curves).flatMap((c) => c.points.map(({ row }) =>
     [c.muscle, c.model, c.variant, c.path, c.period, c.case, point[row], ...Object.values(columns).map((v) => v[row]),
       ...Object.values(errors).map((v) => v[row]), status[row], flags[row], note[row]]));
-  return [head, ...rows].map((cells) => cells.map(quoted).join(",")).join("\r\n") + "\r\n";
+  const told = { points: "measured", suspect: "measured, not used", between: "between what was measured" };
+  const measured = panels.flatMap((panel) => panel.measured).flatMap((m) => Object.entries(told).flatMap(([kind, model]) =>
+    m[kind].map(({ row }) => [m.muscle, model, m.source, choice.path, "", "", "",
+      ...Object.keys(columns).map((name) => (name === "load" ? "" : row[OF_MAP[name]])),
+      ...Object.keys(errors).map(() => ""), "", "", ""])));
+  return [head, ...rows, ...measured].map((cells) => cells.map(quoted).join(",")).join("\r\n") + "\r\n";
 }
 
 /** Round numbers between two ends, about ``count`` of them. */
