@@ -273,6 +273,7 @@ def test_curves_in_time_are_loops_and_are_read_by_their_time(browser, more, tmp_
         row = tab.locator("#plots tbody tr", has_text="period 4 s").first
         value = float(row.locator("td").nth(1).inner_text())
         assert value == pytest.approx(float(own["force"][2]), rel=1e-5)
+        assert "steps too long in time: in cycle 1 work differs by" in row.inner_text()
         box = tab.locator("#plots .u-over").bounding_box()
         tab.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
         assert tab.inner_text("#plots thead th") != head

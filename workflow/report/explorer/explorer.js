@@ -379,7 +379,8 @@ function read(panel, x) {
   const rows = panel.curves.map((c) => {
     const found = valueAt(c, panel.at);
     const error = found && found.error ? `± ${digits(found.error, 2)}` : "";
-    const said = found ? [found.status !== "converged" ? found.status : "", found.flags, found.note].filter(Boolean).join("; ") : c.case_reason;
+    const doubt = c.case_status === "unbalanced" ? c.case_reason : ""; // all its states are equilibria, yet it is not valid
+    const said = found ? [doubt, found.status !== "converged" ? found.status : "", found.flags, found.note].filter(Boolean).join("; ") : c.case_reason;
     return row([key(c), c.label], found ? (found.between ? "≈ " : "") + digits(found.y) : "", error, said);
   });
   for (const m of inTime() ? [] : panel.measured) {
