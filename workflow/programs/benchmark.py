@@ -23,6 +23,8 @@ def run(given: argparse.Namespace) -> int:
     """Measure it."""
     tables = results_of(given) / "tables"
     benchmark.make(given.study, given.runs, BENCHMARK, tables / "benchmark.csv")
-    steps_of_time.make(load(given.study), given.runs, tables / "time_steps.csv", print)
-    times.make(given.study, given.cores, given.muscles, tables / "times.csv", print)
+    study = load(given.study)
+    steps_of_time.make(study, given.runs, tables / "time_steps.csv", print)
+    solid = benchmark.of_solid(study, given.runs)
+    times.make(given.study, given.cores, given.muscles, solid, tables / "times.csv", print)
     return 0

@@ -5,7 +5,8 @@
 #        results/tables/benchmark.csv   how cost grows
 #        results/tables/time_steps.csv  what a step of time costs, with memory and without
 #        results/tables/times.csv       where the time of whole runs goes: from scratch, with nothing
-#                                       to do, a thousand muscles of one sweep
+#                                       to do, a thousand muscles of one sweep; and a
+#                                       curve by the solid
 #        results/figures/accuracy.png   drawn again with these costs
 #
 # It has no outputs for Snakemake: whoever asks for it wants it measured again.

@@ -11,7 +11,7 @@ import resource
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -47,12 +47,20 @@ scenes:
 Row = tuple[str, float, float | None]
 
 
-def make(study: Path, cores: int, muscles: int, table: Path, say: Callable[[str], None]) -> None:
+def make(
+    study: Path,
+    cores: int,
+    muscles: int,
+    more: Mapping[str, float],
+    table: Path,
+    say: Callable[[str], None],
+) -> None:
     """Measure, and write a table of it.
 
     Parameters
     ----------
     muscles : how many there are in a study of one sweep, each a curve by the membrane
+    more : rows below these, of seconds of the processor that are known already
     say : is told every line
 
     Raises
@@ -67,12 +75,14 @@ def make(study: Path, cores: int, muscles: int, table: Path, say: Callable[[str]
         sweep.write_text(SWEEP.format(last=200 + (muscles - 1) / 10))
         each = [spent / muscles for spent in bench.run(sweep)]
         rows.append((f"{muscles} curves by the membrane, each", each[0], each[1]))
+    rows += [(what, seconds, None) for what, seconds in more.items()]
     with atomic_write(table) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(COLUMNS)
         writer.writerows((what, f"{s:.3g}", "" if w is None else f"{w:.3g}") for what, s, w in rows)
     for what, seconds, wall in rows:
-        say(f"{what:40} {seconds:8.3g} s{'' if wall is None else f' in {wall:.3g} s'}")
+        unit = "" if what.endswith("[1]") else " s"
+        say(f"{what:48} {seconds:8.3g}{unit}{'' if wall is None else f' in {wall:.3g} s'}")
 
 
 class _Bench:
@@ -115,7 +125,7 @@ class _Bench:
             ("  FreeFEM", freefem, None),
             *((f"  {said}", noted[program], None) for program, said in PROGRAMS.items()),
             ("  Snakemake and the rest", rest, None),
-            ("times FreeFEM", whole / freefem if freefem else float("nan"), None),
+            ("times FreeFEM [1]", whole / freefem if freefem else float("nan"), None),
             ("the study with nothing to do", again, soon),
         ]
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from solver import net
+from workflow.analyses.accuracy import benchmark as accuracy_benchmark
 from workflow.analyses.time import benchmark, cases, table
 from workflow.analyses.time.three_elements import ThreeElements
 from workflow.study.study import load
@@ -87,3 +88,8 @@ def test_a_loop_that_was_not_solved_has_no_numbers(study):
     rows = table.tables(study, solved)["time"]
     assert np.isnan(rows.loc[1, "width"])
     assert rows["three elements, width [N]"].isna().all()
+
+
+def test_the_benchmark_solves_a_curve_of_26_states_on_two_meshes(study):
+    once, twice = accuracy_benchmark.of_solid(study, 1).values()
+    assert 0 < once < twice < 60

@@ -17,6 +17,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -25,10 +26,14 @@ import pandas as pd
 
 from geometry.files import atomic_write
 from solver.freefem import Limits, executable
+from solver.load_path import LoadPath, PathKind
+from solver.numerics import Numerics
 from solver.solve import solve
 from workflow.analyses import analysis
 from workflow.analyses.accuracy import costs as accuracy_costs
+from workflow.analyses.accuracy.settings import MUSCLE, PRESSURE, STEP
 from workflow.analyses.analysis import AnalysisCase
+from workflow.study.contents import Study
 from workflow.study.errors import StudyError
 
 SETS = ("mesh", "steps", "tolerance")
@@ -38,6 +43,10 @@ SETS = ("mesh", "steps", "tolerance")
 EXPECTED = {"membrane": (0.15, 0.4), "solid": (0.45, 2.2), "cell": (23.0, 3.0)}
 AROUND = 0.5  # s, for Python and the mesh of one solve, on that machine
 STATES = 21
+OF_SOLID = {  # rows: refinement of its default mesh
+    "26 states by the solid, FreeFEM": 1,
+    "26 states by the solid, refinement: 2, FreeFEM": 2,
+}
 WARM = 5  # repetitions of a model that takes next to nothing
 
 
@@ -123,6 +132,25 @@ class Bench:
         start = time.monotonic()
         self.cost(first)
         return (time.monotonic() - start) / expected_seconds(first)
+
+
+def of_solid(study: Study, runs: int) -> dict[str, float]:
+    """CPU seconds of FreeFEM for a curve to 25 % at 0.3 MPa by row, the least of several runs.
+
+    docs/decisions/0009 has the same curve with the mesh and the tangent that were before.
+    """
+    stops = tuple(round(STEP * number, 10) for number in range(26))
+    path = LoadPath(kind=PathKind.ISOBARIC, held=PRESSURE, stops=stops)
+    found = dict.fromkeys(OF_SOLID, float("inf"))
+    with TemporaryDirectory() as scratch:
+        bench = Bench(Path(scratch))
+        for _ in range(runs):
+            for row, refinement in OF_SOLID.items():
+                mesh = replace(Numerics().section, refinement=refinement)
+                case = study.muscles[MUSCLE].case(path, "solid", numerics=Numerics(section=mesh))
+                spent = bench.cost(AnalysisCase(case, row))[accuracy_costs.SOLVE]
+                found[row] = min(found[row], spent)
+    return found
 
 
 def expected_seconds(asked: AnalysisCase) -> float:
