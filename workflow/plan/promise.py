@@ -343,21 +343,16 @@ class _Climb:
     def _unguessed(self) -> str:
         """Without a guess: meshes of the best model, from the coarsest, until states are lost."""
         meshes = [n for n in self._meshes(self.names[-1])[::-1] if not self._given_up(n)]
-        last = meshes[-1]
-        for name in meshes:
-            if name not in self.solved:
-                return name
-            if not is_valid(self.solved[name]).all() and name != last:
-                return name
-        return last
+        short = (n for n in meshes if n not in self.solved or not is_valid(self.solved[n]).all())
+        return next(short, meshes[-1])
 
     def _given_up(self, name: str) -> bool:
         """Whether a mesh is not tried: of two coarser ones that are there one has lost states."""
+        if name in self.solved:
+            return False
         meshes = self._meshes(name)
         coarser = [self.solved[n] for n in meshes[meshes.index(name) + 1 :] if n in self.solved]
         lost = [not is_valid(each).all() for each in coarser]
-        if name in self.solved:
-            return False
         return (len(lost) > 1 and any(lost)) or inf in map(self.closed.get, meshes)
 
     def _left_open(self, name: str) -> tuple[int, ...]:

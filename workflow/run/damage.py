@@ -46,10 +46,8 @@ def end_future(folder: Path) -> None:
 
 def remove(path: Path) -> None:
     """Delete what stands in the place of a result, whatever it is."""
-    if path.is_dir() and not path.is_symlink():
-        shutil.rmtree(path)
-    else:
-        path.unlink(missing_ok=True)
+    make_room(path)
+    path.unlink(missing_ok=True)
 
 
 def make_room(path: Path) -> None:
