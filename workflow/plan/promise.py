@@ -8,9 +8,9 @@ proved exact enough
   and what the better one may itself be off are within the tolerance,
 - or, of a mesh, by a coarser one on this curve.
 
-Where neither is so it climbs, but not to a finer mesh where a coarser one has lost states: that
-proves nothing of the next, and finer ones mostly lose them too, at many times the cost. Nothing is
-promised there of states that none has, as a finer one may have them. Where two meshes leave open
+Where neither is so it climbs, but not to a finer mesh where coarser ones have lost states, or where
+the tube is folded: finer ones mostly lose such states, at many times the cost. Nothing is promised
+there of states that none has, as a finer one may have them. Where two meshes leave open
 few states only, a finer one is solved at these alone: where a muscle folds, a curve of it costs
 many times such a state. Of the cheapest rung that like muscles
 prove it takes the finest mesh that they prove and that costs at most ``MORE`` times as much, which
@@ -42,6 +42,7 @@ START = 40  # states that cost as much as getting to the first one
 CHEAP = 0.6  # of the cost of all states: a check at a few of them that costs more is not worth it
 MORE = 1.5  # times the cost of a mesh that holds: a finer one is taken for so much
 TELLING = 4  # states at most of a check
+FOLDED = 0.75  # det F: where a pushed muscle has less on a mesh, the tube has a crease
 LIKELY = 0.8  # error of the default mesh by its difference from the coarser one: 7 of 10 have less
 Solve = Callable[[Case], Solution]
 Known = Callable[[Case], Solution | None]
@@ -212,6 +213,8 @@ class _Climb:
         known = self.asked.guesses[name]
         if known is None:
             return Verdict(nan, 0.0, "not known")
+        if self._is_folded(name):
+            return Verdict(nan, 0.0, "not known, as the tube is folded")
         by = f"estimated from {known.count} like muscles"
         return Verdict(known.high, known.chance(self.asked.tolerance), by)
 
@@ -347,13 +350,30 @@ class _Climb:
         return next(short, meshes[-1])
 
     def _given_up(self, name: str) -> bool:
-        """Whether a mesh is not tried: of two coarser ones that are there one has lost states."""
+        """Whether a mesh is not tried: two coarser ones have lost states, or one is folded."""
         if name in self.solved:
             return False
+        lost = [not is_valid(each).all() for each in self._coarser(name)]
+        open_ones_lost = inf in map(self.closed.get, self._meshes(name))
+        return (len(lost) > 1 and any(lost)) or open_ones_lost or self._is_folded(name)
+
+    def _is_folded(self, name: str) -> bool:
+        """Whether a tube has a crease on a coarser mesh, which is the sharper the finer the mesh.
+
+        At the ends of muscles that pull, rubber may have as small a det F, and nothing folds.
+        """
+        if name in self.solved:
+            return False
+        for each in self._coarser(name):
+            pushed = is_valid(each) & (each.states["force"] < 0)
+            if (each.states["min_det_f"][pushed] < FOLDED).any():
+                return True
+        return False
+
+    def _coarser(self, name: str) -> list[Solution]:
+        """By the coarser meshes of a model, of those that are there."""
         meshes = self._meshes(name)
-        coarser = [self.solved[n] for n in meshes[meshes.index(name) + 1 :] if n in self.solved]
-        lost = [not is_valid(each).all() for each in coarser]
-        return (len(lost) > 1 and any(lost)) or inf in map(self.closed.get, meshes)
+        return [self.solved[n] for n in meshes[meshes.index(name) + 1 :] if n in self.solved]
 
     def _left_open(self, name: str) -> tuple[int, ...]:
         """Stops of the next coarser mesh that its own coarser one leaves open; none if many.

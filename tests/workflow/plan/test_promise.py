@@ -52,10 +52,12 @@ def guessed(monkeypatch, **errors):
 class Solver:
     """Gives curves that are off by known shares, and counts what it is asked for."""
 
-    def __init__(self, rungs, lost=(), smoothed=(), none=False, at=None, **off):
+    def __init__(self, rungs, lost=(), smoothed=(), none=False, at=None, det_f=None, **off):
         self.rungs, self.off, self.lost, self.smoothed = rungs, off, lost, smoothed
         self.good = StateStatus.INVALID_STATE if none else StateStatus.CONVERGED
         self.at = at or {}  # rungs that are off at one state alone
+        self.det_f = det_f or {}  # by rung, of the last stop, which is pushed then
+        self.pushed = -10.0
         self.asked = []
         self.known = {}
 
@@ -67,6 +69,9 @@ class Solver:
         off = self.off.get(name.replace(", ", "_"), 0) * 600 * where
         states = unreached(len(at)) | {"force": FORCE[at] + off}
         states["contraction"] = np.array(case.path.stops)
+        if name in self.det_f:
+            states["min_det_f"] = np.where(FORCE[at] == FORCE[-1], self.det_f[name], 0.95)
+            states["force"] = np.where(FORCE[at] == FORCE[-1], self.pushed, states["force"])
         status = [self.good] * len(at)
         if name in self.lost:
             status[-1] = StateStatus.INVALID_STATE
@@ -192,6 +197,30 @@ def test_a_mesh_that_has_lost_states_is_refined_no_further(meshes, monkeypatch):
     assert solver.asked == [("solid, coarser", 5)]
     assert (end.rung, end.holds, end.error) == ("solid, coarser", False, inf)
     assert not kept(meshes, solver, 0.05).holds  # a finer mesh may have what this has lost
+
+
+def test_a_folded_tube_is_refined_no_further(meshes, monkeypatch):
+    guessed(monkeypatch, solid_coarser=0.02, solid=0.02, solid_finer=1e-4)
+    solver = Solver(meshes, det_f={"solid, coarser": 0.9, "solid": 0.7}, solid_coarser=0.009)
+    for name in ("solid, coarser", "solid"):
+        solver(meshes[name])
+    assert kept(meshes, solver, 0.015).holds
+    end = kept(meshes, solver, 0.01)
+    assert len(solver.asked) == 2  # though like muscles would prove the finest
+    assert (end.rung, end.holds) == ("solid", False)
+    assert end.error == pytest.approx(1.5 * 0.009, rel=0.01)
+    assert end.verdicts["solid, finer"].by == "not known, as the tube is folded"
+    solver(meshes["solid, finer"])  # what is there is looked at nevertheless
+    assert kept(meshes, solver, 0.01).rung == "solid, finer"
+
+
+@pytest.mark.parametrize(("det_f", "force"), [(0.7, 10.0), (0.8, -10.0)])
+def test_a_tube_that_pulls_or_is_hardly_pressed_is_refined(meshes, monkeypatch, det_f, force):
+    guessed(monkeypatch)
+    solver = Solver(meshes, det_f={"solid, coarser": 0.95, "solid": det_f}, solid_coarser=0.009)
+    solver.pushed = force
+    kept(meshes, solver, 0.005)
+    assert [name for name, _ in solver.asked] == ["solid, coarser", "solid", "solid, finer"]
 
 
 def test_a_finer_mesh_is_solved_where_coarser_ones_leave_it_open(meshes, monkeypatch):
