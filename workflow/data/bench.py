@@ -546,7 +546,8 @@ def _found(study: Study, place: tuple[str, ...], named: str, muscle: str) -> For
         found = read(named, study.muscles[muscle].muscle.length)
     except StudyError as error:
         given = f"{source.place(place)} = {shown(named)} is refused"
-        return StudyError(f"{given}\n  {error}", source.line(place) or 0, place)
+        where = user_file.sought(source.path, named) if is_path(named) else ""
+        return StudyError(f"{given}\n  {error}{where}", source.line(place) or 0, place)
     if (share := _share_of_net(study, muscle, found)) and not LEAST < share < MOST:
         guess = "perhaps kN under N" if share < LEAST else "perhaps another unit"
         allowed = (

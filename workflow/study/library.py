@@ -81,13 +81,15 @@ def completed(path: Path, root: Node, also: Collection[str] = ()) -> tuple[Node,
     if not isinstance(root.value, dict):
         return root, set()
     taken: set[Entry] = set()
-    ahead = [*_named(root.plain()), *(("muscles", name) for name in also)]
+    ahead = [*_named(root.plain(), path), *(("muscles", name) for name in also)]
     while ahead:
         section, name = entry = ahead.pop()
         if entry in taken or name in _own(root, section) or name not in names(section):
             continue
         taken.add(entry)
-        needed = _named({"muscles": {name: values(section, name)}}) if section == "muscles" else []
+        needed = (
+            _named({"muscles": {name: values(section, name)}}, path) if section == "muscles" else []
+        )
         for of, other in needed:
             if other in _own(root, of):
                 line = root.value[of].lines[other]
@@ -115,7 +117,7 @@ def _own(root: Node, section: str) -> dict[str, Node]:
     return found.value if found is not None and isinstance(found.value, dict) else {}
 
 
-def _named(plain: dict[str, Any]) -> Iterator[Entry]:
+def _named(plain: dict[str, Any], study: Path) -> Iterator[Entry]:
     """Muscles and materials that entries name; what is no name is refused later."""
     for entry in _mappings(plain, "scenes"):
         listed = entry.get("muscles")
@@ -134,7 +136,7 @@ def _named(plain: dict[str, Any]) -> Iterator[Entry]:
                 yield from _entry_of(section, name)
     for entry in _mappings(plain, "muscles"):
         swept = entry.get("sweep")
-        for row in (entry, *_rows(entry.get("table"))):
+        for row in (entry, *_rows(entry.get("table"), study)):
             for key, section in NAMING.items():
                 yield from _entry_of(section, row.get(key))
         materials = swept.get("material") if isinstance(swept, dict) else None
@@ -142,12 +144,13 @@ def _named(plain: dict[str, Any]) -> Iterator[Entry]:
             yield from _entry_of("materials", name)
 
 
-def _rows(table: object) -> list[dict[str, str]]:
+def _rows(table: object, study: Path) -> list[dict[str, str]]:
     """Rows of a table of muscles; none of one that cannot be read, which is refused later."""
     if not isinstance(table, str):
         return []
     try:
-        return list(csv.DictReader(user_file.text_of(Path(table)).splitlines()))
+        file = Path(user_file.named_by(study, table))
+        return list(csv.DictReader(user_file.text_of(file).splitlines()))
     except (StudyError, csv.Error):
         return []
 

@@ -155,7 +155,7 @@ class Muscles:
                 {key: values[key] for key in OF_INSTALLATION if key in values},
                 {},
             ),
-            reference=values.get("reference", ()),
+            reference=tuple(map(self.source.file, values.get("reference", ()))),
             friction=self._friction(name, values, made["muscle"]),
             **made,
         )

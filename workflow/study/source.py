@@ -20,6 +20,7 @@ from workflow.study.schema import (
     NOT_SWEPT,
     Entry,
     StudyFile,
+    is_path,
     law_of,
 )
 
@@ -148,6 +149,10 @@ class Source:
                 return False
             found = found[key]
         return True
+
+    def file(self, name: str) -> str:
+        """The path of a file that the study names, or the name of a map as it is."""
+        return user_file.named_by(self.path, name) if is_path(name) else name
 
     def owner(self, muscle: str, key: str) -> str:
         """The muscle that wrote what a muscle has for a key; the root of its bases if none has."""

@@ -145,7 +145,9 @@ def _fit(study: Study, name: str) -> CalibrationEntry:
     """A calibration with its forces: where none are named, the first map of the muscle itself."""
     entry = study.calibration[name]
     made = study.muscles.get(entry.muscle)
-    if entry.reference is not None or made is None or not made.reference:
+    if entry.reference is not None:
+        return entry.model_copy(update={"reference": study.source.file(entry.reference)})
+    if made is None or not made.reference:
         return entry
     return entry.model_copy(update={"reference": made.reference[0]})
 

@@ -131,7 +131,13 @@ class _Spread:
     def _add_table(self, name: str, table: str, findings: Findings) -> None:
         """Rows of a CSV file; each is refused alone."""
         found: list[str] = []
-        for line, row in _rows(table):
+        study = self._source.path
+        table = user_file.named_by(study, table)
+        try:
+            rows = _rows(table)
+        except StudyError as said:
+            raise StudyError(f"{said}{user_file.sought(study, table)}", said.line) from None
+        for line, row in rows:
             new = row.pop(NAMES, None)
             place = f"{printable(table)}:{line}"
             try:

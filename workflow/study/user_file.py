@@ -1,5 +1,6 @@
 """The text of a file that a user names: whatever stands there, an answer in bounded time."""
 
+import os
 import stat
 from pathlib import Path
 
@@ -10,6 +11,20 @@ KINDS: dict[bytes | tuple[bytes, ...], str] = {  # by first bytes
     (b"PK\x03\x04", b"\xd0\xcf\x11\xe0", b"\x1f\x8b"): "a file of a spreadsheet or an archive",
 }
 LARGEST = 1_000_000  # bytes; a study of a thousand muscles has a tenth of that
+
+
+def named_by(study: Path, name: str) -> str:
+    """The path of a file that a study names: beside the study, or else from where a run starts."""
+    beside = study.parent / name
+    return str(beside) if study.parent != Path() and os.path.isfile(beside) else name
+
+
+def sought(study: Path, name: str) -> str:
+    """A line: where a file was looked for; nothing if it is there, or there is one place only."""
+    if os.path.exists(name) or Path(name).is_absolute() or study.resolve().parent == Path.cwd():
+        return ""
+    folders = f"{printable(str(study.parent))}, beside the study file, and {Path.cwd()}"
+    return f"\n  looked for in {folders}"
 
 
 def text_of(path: Path, largest: int = LARGEST) -> str:

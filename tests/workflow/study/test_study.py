@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from solver.numerics import KINDS
+from workflow.data import bench
 from workflow.plan.plan import plan
 from workflow.study import schema
 from workflow.study.errors import StudyError
@@ -330,3 +331,43 @@ def test_an_unknown_map_is_refused_by_name(tmp_path):
     assert "muscles.one.reference" in message
     assert "martens2071" in message
     assert "martens2017" in message
+
+
+GOOD = "pressure_MPa,contraction,force_N\n0.3,0,700\n0.3,0.1,400\n0.3,0.2,100\n"
+
+
+@pytest.fixture
+def elsewhere(tmp_path, monkeypatch):
+    """A study that names a file of forces and one of muscles, in a folder below that of a run."""
+    text = changed("    material: nbr\n", "    material: nbr\n    reference: [forces.csv]\n")
+    text = text.replace("  wide:", "  many: {base: one, table: many.csv}\n  wide:")
+    text = text.replace(
+        "scenes:", "calibration:\n  bench: {muscle: one, reference: forces.csv}\nscenes:"
+    )
+    (tmp_path / "bench").mkdir()
+    study_file(tmp_path / "bench", text)
+    monkeypatch.chdir(tmp_path)
+    return Path("bench/study.yaml")
+
+
+@pytest.mark.parametrize(
+    ("there", "taken"), [(["bench"], "bench/"), ([""], ""), (["bench", ""], "bench/")]
+)
+def test_files_are_those_beside_the_study_or_where_the_run_starts(elsewhere, there, taken):
+    for folder in there:
+        (Path(folder) / "forces.csv").write_text(GOOD)
+        (Path(folder) / "many.csv").write_text(f"name,length\n{folder or 'here'},200\n")
+    study = load(elsewhere)
+    assert study.muscles["one"].reference == (f"{taken}forces.csv",)
+    assert study.calibration["bench"].reference == f"{taken}forces.csv"
+    assert study.source.groups["many"] == (there[0] or "here",)
+    assert not list(bench.refused(study))
+
+
+def test_a_file_that_is_nowhere_says_where_it_was_looked_for(elsewhere):
+    with pytest.raises(StudyError, match=r"many\.csv: cannot be read.*\n.*bench, beside the study"):
+        load(elsewhere)
+    Path("many.csv").write_text("name,length\nshort,200\n")
+    said = [str(error) for error in bench.refused(load(elsewhere))]
+    assert len(said) == 2
+    assert all("looked for in bench, beside the study file, and " in each for each in said)
