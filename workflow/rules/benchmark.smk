@@ -1,20 +1,15 @@
-# What the analysis of accuracy costs on this machine: snakemake --cores 2 benchmark
+# Where the time goes on this machine: snakemake --cores 2 benchmark
 #
-#   in   the table of the analysis, so that its figure has both
-#   out  results/cost.csv               medians of several runs one after the other
+#   out  results/tables/times.csv       whole runs: from scratch, with nothing to do, a thousand
+#                                       muscles of one sweep; and a curve by the solid
+#        results/cost.csv               what accuracy costs, which the analysis of accuracy draws
 #        results/tables/benchmark.csv   how cost grows
 #        results/tables/time_steps.csv  what a step of time costs, with memory and without
-#        results/tables/times.csv       where the time of whole runs goes: from scratch, with nothing
-#                                       to do, a thousand muscles of one sweep; and a
-#                                       curve by the solid
-#        results/figures/accuracy.png   drawn again with these costs
 #
 # It has no outputs for Snakemake: whoever asks for it wants it measured again.
 
 
 rule benchmark:
-    input:
-        f"{RESULTS}/tables/accuracy.csv",
     log:
         f"{RESULTS}/logs/benchmark.log",
     # Nothing else runs beside it. Asked late, since --report names no cores.
@@ -22,7 +17,6 @@ rule benchmark:
     params:
         study=lambda _: STUDY,  # as it is, braces and all
     message:
-        "Measuring what accuracy costs"
+        "Measuring where the time goes"
     shell:
         "python -m workflow benchmark --study {params.study:q} --cores {threads} 2> >(tee {log:q} >&2)"
-        " && python -m workflow analysis --study {params.study:q} --name accuracy"

@@ -11,11 +11,11 @@ import resource
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from geometry.files import atomic_write
+from geometry.files import RESULTS, atomic_write
 from solver.sources import ROOT
 from workflow.study.errors import StudyError
 from workflow.study.folders import COST
@@ -44,6 +44,9 @@ scenes:
     contraction: {{from: 0, to: 0.2, step: 0.01}}
     models: [membrane]
 """
+# Seconds of a run on the machine on which this was written, beside those of its solves; a curve of
+# the sweep. Only for saying beforehand what it will take.
+EXPECTED, EXPECTED_OF_CURVE = 25.0, 0.27
 Row = tuple[str, float, float | None]
 
 
@@ -53,6 +56,7 @@ def make(
     muscles: int,
     more: Mapping[str, float],
     table: Path,
+    machine: Iterable[str],
     say: Callable[[str], None],
 ) -> None:
     """Measure, and write a table of it.
@@ -61,28 +65,38 @@ def make(
     ----------
     muscles : how many there are in a study of one sweep, each a curve by the membrane
     more : rows below these, of seconds of the processor that are known already
+    machine : lines above the table
     say : is told every line
 
     Raises
     ------
     StudyError
-        If a run fails.
+        If a run fails; a study whose cases fail is measured all the same.
     """
     with TemporaryDirectory() as scratch:
         bench = _Bench(Path(scratch), cores)
+        say(f"running {study} from scratch, and again with nothing to do")
         rows = bench.parts(study.resolve())
         sweep = Path(scratch, "many.yaml")
         sweep.write_text(SWEEP.format(last=200 + (muscles - 1) / 10))
+        say(f"running a study of one sweep: {muscles} muscles")
         each = [spent / muscles for spent in bench.run(sweep)]
         rows.append((f"{muscles} curves by the membrane, each", each[0], each[1]))
     rows += [(what, seconds, None) for what, seconds in more.items()]
     with atomic_write(table) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
+        stream.writelines(f"# {line}\n" for line in machine)
         writer = csv.writer(stream)
         writer.writerow(COLUMNS)
         writer.writerows((what, f"{s:.3g}", "" if w is None else f"{w:.3g}") for what, s, w in rows)
     for what, seconds, wall in rows:
         unit = "" if what.endswith("[1]") else " s"
         say(f"{what:48} {seconds:8.3g}{unit}{'' if wall is None else f' in {wall:.3g} s'}")
+    say(f"written: {table}")
+
+
+def expected_seconds(of_solves: float, cores: int, muscles: int) -> float:
+    """Wall seconds of all that is measured, there; of the study's solves so many one by one."""
+    return (of_solves + EXPECTED + muscles * EXPECTED_OF_CURVE) / min(cores, os.cpu_count() or 1)
 
 
 class _Bench:
@@ -90,6 +104,7 @@ class _Bench:
 
     def __init__(self, folder: Path, cores: int) -> None:
         self.folder, self.cores = folder, cores
+        self.studies = set[Path]()
 
     def run(self, study: Path) -> tuple[float, float]:
         """Seconds of the processor and on the clock of one run."""
@@ -104,7 +119,8 @@ class _Bench:
             text=True,
             check=False,
         )
-        if done.returncode:
+        self.studies.add(study)
+        if len(list((self.folder / RESULTS).rglob("dataset.nc"))) < len(self.studies):
             raise StudyError(f"{study}: the run failed\n{done.stderr[-2000:]}")
         return _used() - before, time.monotonic() - start
 

@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from geometry.files import RESULTS
+from workflow.analyses.accuracy.analysis import BENCHMARK
 from workflow.analyses.accuracy.errors import exponent
 from workflow.study import folders
 
-BENCHMARK = RESULTS / "cost.csv"
 SINGLE = folders.COST
 PARTS = {  # column: what it is, in the order in which it is spent
     "mesh [s]": "mesh",
