@@ -56,7 +56,7 @@ def _verdicts(
                 f"rubber stretch {rubber[number]:.3g}; its law was fitted up to {fitted[1]:g}"
             )
         if strength is None and stretch > LONG:
-            said.append(f"threads stretched to {stretch:.3g}; {UNKNOWN}")
+            said.append(_stretched(stretch))
         if limits.room and np.isfinite(solution.states["force"][number]):
             said.append(limits.room)
         flags = {Flag.OVERSTRAINED: beyond, Flag.EXTRAPOLATED: outside}
@@ -74,8 +74,13 @@ def summary(curves: Iterable[Any]) -> dict[str, str]:
         for states, what in ((beyond, "are overstrained"), (long, "have long threads")):
             if states:
                 worst = max(states, key=stretch.__getitem__)
+                note = solution.notes[worst] if states is beyond else _stretched(stretch[worst])
                 found.setdefault(curve.key, []).append(
                     f"{len(states)} of {len(solution.notes)} states of {curve.place.muscle} "
-                    f"{what}, at most: {solution.notes[worst]}"
+                    f"{what}, at most: {note}"
                 )
     return {key: ". ".join(dict.fromkeys(said)) for key, said in found.items()}
+
+
+def _stretched(stretch: float) -> str:
+    return f"threads stretched to {stretch:.3g}; {UNKNOWN}"

@@ -29,7 +29,17 @@ from workflow.data.states import (
 )
 from workflow.data.strain import LONG
 from workflow.figures.labels import SERIES, shown
-from workflow.figures.style import SOFT, compared, grow, in_order, labelled, legend, look_of, series
+from workflow.figures.style import (
+    SOFT,
+    compared,
+    grow,
+    in_order,
+    labelled,
+    legend,
+    look_of,
+    marked,
+    series,
+)
 
 Array = NDArray[np.float64]
 UNSTABLE = StateStatus.UNSTABLE.value
@@ -78,9 +88,11 @@ def by_source(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None
 
 def by_series(ax: Any, rows: pd.DataFrame, x: str, y: str, **style: Any) -> None:
     """One curve for each series and model: colour and marker by series, line by model."""
+    bearer = marked(rows["source"])
     for number, (name, each) in enumerate(rows.groupby(SERIES, sort=False)):
         for source in in_order(each["source"]):
-            one, look = each[each["source"] == source], compared(source, number)
+            look = compared(source, number, marked=source == bearer)
+            one = each[each["source"] == source]
             step = max(1, len(one) // 5)
             apart = {"markevery": (number % step, step)} if "marker" not in look else {}
             label = {"label": f"_{look_of(source)['label']}, {name}"}

@@ -63,8 +63,10 @@ def table(data: Any) -> pd.DataFrame:
     every[MODEL] = every["source"].map(lambda source: look_of(source)["label"])
     every["variant"] = every["variant"].fillna("default")
     every[SERIES] = series(every, told_apart, apart=False)
-    title = chosen.title or constants(every, ["muscle", held])
-    every.attrs = {"x": x, "y": y, "title": title, "by": chosen.by}
+    alike = constants(every, ["muscle", held])
+    said = f"{alike}." if chosen.title and alike else ""  # which a title of one's own may not say
+    title = chosen.title or alike
+    every.attrs = {"x": x, "y": y, "title": title, "said": said, "by": chosen.by}
     return every
 
 
@@ -88,7 +90,7 @@ def draw(table: pd.DataFrame) -> Figure:
         if column == CONTRACTION:
             percent(axis)
     curves.series_legend(figure, shown)
-    text = muscles(table)
+    text = f"{table.attrs['said']} {muscles(table)}".strip()
     if len(suspect):
         text += " Crosses are points of a map that are not used."
     text = f"{left_out} {text}"
@@ -143,7 +145,9 @@ def _label(column: str) -> str:
     if column == CONTRACTION:
         return "contraction [%]"
     name, _, unit = column.partition(" [")
-    return name.replace("_", " ") + ("" if unit in {"1]", ""} else f" [{unit}")
+    if name.endswith("_max"):
+        name = f"largest {name.removesuffix('_max')}"
+    return name.replace("_", " ") + f" [{unit}" * bool(unit)
 
 
 def _measured(data: Any, kind: PathKind) -> list[pd.DataFrame]:

@@ -115,15 +115,27 @@ def look_of(source: str) -> dict[str, Any]:
     return SOURCES.get(source, {"label": source, **(OTHER if source in MODELS else OWN)})
 
 
-def compared(source: str, number: int = 0) -> dict[str, Any]:
-    """Line of a model or map in the n-th series; dashes of neighbours fill each other's gaps."""
+def compared(source: str, number: int = 0, *, marked: bool = False) -> dict[str, Any]:
+    """Line of a model or map in the n-th series; dashes of neighbours fill each other's gaps.
+
+    A model that is ``marked`` has the markers of the series.
+    """
     other = {k: v for k, v in OTHER.items() if k != "color"} | {"marker": ""}
     of_map = {"linewidth": 0.9, "linestyle": ":", "marker": look_of(source).get("marker", "")}
     look = COMPARED.get(source, of_map if of_map["marker"] else other)
+    if marked:
+        look = {key: value for key, value in look.items() if key != "marker"}
     if not isinstance(look.get("linestyle"), tuple):
         return look
     offset, dashes = look["linestyle"]
     return look | {"linestyle": (offset + number % 2 * sum(dashes) / 2, dashes)}
+
+
+def marked(sources: Iterable[str]) -> str | None:
+    """The model that has the markers of the series: one that always has, else the last drawn."""
+    models = [source for source in in_order(sources) if source in MODELS]
+    always = [source for source in models if "marker" not in compared(source)]
+    return next(iter(always or models[::-1]), None)
 
 
 def in_order(sources: Iterable[str]) -> list[str]:

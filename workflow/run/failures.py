@@ -97,7 +97,7 @@ def _row(key: str, label: str, solution: Solution, strain: str = "") -> Row:
         "label": label,
         "status": solution.status.value,
         "states_missing": str(sum(status in bad for status in solution.state_status)),
-        "reason": " ".join([*solution.reason.split(), *strain.split()]),
+        "reason": "; ".join(filter(None, (" ".join(t.split()) for t in (solution.reason, strain)))),
         "scenes": "",
         "log": f"{LOGS}/{key}.log",
         "analyses": "",

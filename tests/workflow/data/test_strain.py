@@ -1,5 +1,6 @@
 """States beyond what thread and rubber bear: marked when gathered, and nothing is solved for it."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.record import unreached
-from solver.status import Flag
+from solver.status import CaseStatus, Flag
 from workflow.data import strain
 from workflow.plan.plan import plan
 from workflow.run import failures
@@ -116,6 +117,9 @@ def test_failures_name_the_worst_state(solved, study, tmp_path):
     assert not failed  # it is an answer
     solved_all = "one cylinder isobaric 0.3 MPa: solved; 2 of 4 states of one have long threads"
     assert text.startswith(f"{solved_all}, at most: threads stretched to 1.13")
+    ended = replace(judged, status=CaseStatus.LIMIT_POINT, reason="fold\nat contraction 0.3")
+    failures.write(found, {key: ended}, table, said)
+    assert "limit_point, fold at contraction 0.3; 2 of 4 states" in failures.report(table)[0]
 
 
 @pytest.mark.parametrize(

@@ -110,6 +110,17 @@ def test_other_quantities_colours_and_a_title(scene):
     assert set(table["source"]) == {"membrane", "solid"}  # no map has a volume
     assert len({line.get_color() for line in ax.lines if len(line.get_xdata()) > 2}) == 4
     assert COLUMN["volume"] in table
+    said = " ".join(" ".join(text.get_text() for text in figure.texts).split())
+    assert "one." in said  # what a title of one's own leaves out
+
+
+def test_muscles_of_a_solid_alone_differ_in_more_than_colour(scene):
+    table = general.table(scene("curves", "{x: contraction, y: rubber_stretch_max}"))
+    table = table[table["source"] == "solid"]
+    (ax,) = general.draw(table).axes
+    assert ax.get_ylabel() == "largest rubber stretch [1]"
+    curves = [line for line in ax.lines if len(line.get_xdata()) > 2]
+    assert len({line.get_marker() for line in curves}) == len(curves) == 2
 
 
 def test_maps_only_where_they_are_wanted(scene):

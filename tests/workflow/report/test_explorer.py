@@ -1,5 +1,6 @@
 """The explorer in a real browser: what it shows and gives away are the numbers of the dataset."""
 
+import copy
 import csv
 import os
 import re
@@ -389,6 +390,34 @@ def test_what_failed_is_said(shown, made):
     shown.focus("#plots .chart")
     shown.keyboard.press("End")
     assert " ".join(reason.split()) in shown.inner_text("#plots table")
+
+
+def test_errors_that_are_not_known_and_notes_are_said(browser, made, tmp_path):
+    changed = copy.deepcopy(made[2])
+    by = {"membrane": "not known", "solid": "no mesh"}
+    for curve in (c for c in changed["curves"] if c["muscle"] == "one" and c["model"] in by):
+        curve["error_by"] = by[curve["model"]]
+        rows = slice(curve["first"], curve["first"] + curve["count"])
+        for values in changed["states"]["errors"].values():
+            values[rows] = [None] * curve["count"]
+        if curve["model"] == "membrane":
+            changed["states"]["note"][rows] = ["threads too wide"] * curve["count"]
+    assert {c["error_by"] for c in made[2]["curves"]} > {"no mesh"}
+    page.write(tmp_path / "page.html", changed)
+    with opened(browser, tmp_path / "page.html") as tab:
+        tab.select_option("#path", "isobaric")
+        tab.focus("#plots .chart")
+        tab.keyboard.press("Home")
+        while "contraction = 0\t" not in (table := tab.inner_text("#plots table")):
+            tab.keyboard.press("ArrowRight")
+        assert "error of the mesh" in table
+        assert "not known" in table
+        assert "no mesh" in table
+        assert "threads too wide" not in table  # which stands below it once, however many have it
+        (note,) = tab.locator("#plots p.said").all_inner_texts()
+        assert note.endswith("threads too wide")
+        assert "FE membrane" in note
+        assert "errors: measured" in tab.inner_text("#plots .marks")
 
 
 def test_it_has_no_server_and_is_small(made):

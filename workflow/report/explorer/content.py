@@ -248,10 +248,12 @@ def _curves(table: Table) -> list[dict[str, Any]]:
     """Every curve with its rows in the states, ``first`` to ``first + count``."""
     count = table.states.groupby("curve").size()
     first = table.states.reset_index(drop=True).reset_index().groupby("curve")["index"].min()
+    by = table.states.groupby("curve")["error_by"].first()
     names = ("muscle", "model", "variant", "path", "held", "case", "case_status", "case_reason")
     return [
         {name: _plain(row[name]) for name in names}
         | {"first": int(first.get(number, 0)), "count": int(count.get(number, 0))}
+        | {"error_by": str(by.get(number, ""))}
         for number, row in table.curves.iterrows()
     ]
 

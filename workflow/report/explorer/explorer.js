@@ -301,7 +301,11 @@ function marksOf(panel) {
     ["ring", "zero force", points.some((p) => p.zero && SHOWN.has(p.status))],
     ["triangle", "beyond a limit of the material", points.some((p) => SHOWN.has(p.status) && !p.zero && overstrained(p))],
   ].filter(([, , there = true]) => there);
-  const band = choice.bands && points.some((p) => p.error > 0) ? [element("span", { textContent: "band: error of the mesh" })] : [];
+  const unknown = DATA.states.errors[choice.y] && panel.curves.some((c) => c.error_by === "not known");
+  const band = [
+    choice.bands && points.some((p) => p.error > 0) ? "band: error of the mesh" : "",
+    unknown ? "error not known: no muscle whose meshes were compared is like it; errors: measured in the scene measures it" : "",
+  ].filter(Boolean).map((textContent) => element("span", { textContent }));
   return element("p", { className: "marks" }, ...found.map(([mark, said]) => {
     const parts = [];
     svgPen(parts).mark(mark, 7, 7, colour("--ink"));
@@ -376,19 +380,37 @@ function abscissa(panel, at) {
 /** Numbers of every curve at the state that is nearest to x (or to a time), in the table below. */
 function read(panel, x) {
   panel.at = panel.xs.reduce((best, value) => (Math.abs(value - x) < Math.abs(best - x) ? value : best), panel.xs[0]);
+  const notes = new Map(); // what is said of states, with the curves of which it is
   const rows = panel.curves.map((c) => {
     const found = valueAt(c, panel.at);
-    const error = found && found.error ? `± ${digits(found.error, 2)}` : "";
+    const error = found && found.error ? `± ${digits(found.error, 2)}` : found ? noError(c) : "";
+    if (found && found.note) notes.set(found.note, [...(notes.get(found.note) ?? []), c]);
     const doubt = c.case_status === "unbalanced" ? c.case_reason : ""; // all its states are equilibria, yet it is not valid
-    const said = found ? [doubt, found.status !== "converged" ? found.status : "", found.flags, found.note].filter(Boolean).join("; ") : c.case_reason;
+    const said = found ? [doubt, found.status !== "converged" ? found.status : "", found.flags].filter(Boolean).join("; ") : c.case_reason;
     return row([key(c), c.label], found ? (found.between ? "≈ " : "") + digits(found.y) : "", error, said);
   });
   for (const m of inTime() ? [] : panel.measured) {
     for (const p of m.points.filter((p) => Math.abs(p.x - panel.at) < 1e-9)) rows.push(row(["", `measured: ${m.label}`], digits(p.y), "", ""));
     for (const p of m.between.filter((p) => Math.abs(p.x - panel.at) < 1e-9)) rows.push(row(["", `between what was measured: ${m.label}`], `≈ ${digits(p.y)}`, "", ""));
   }
-  const head = row([`${named(inTime() ? "time" : choice.x)} = ${digits(panel.at)}`], named(choice.y), "error", "", "th");
-  panel.table.replaceChildren(element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows)));
+  const head = row([`${named(inTime() ? "time" : choice.x)} = ${digits(panel.at)}`], named(choice.y), "error of the mesh", "", "th");
+  const said = [...notes].map(([note, of]) => element("p", { className: "said", textContent: `${whose(of, panel.curves)}${note}` }));
+  panel.table.replaceChildren(element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows)), ...said);
+}
+
+/** Why a curve has no error of its mesh; nothing where the page shows no errors of what is up. */
+function noError(curve) {
+  if (!DATA.states.errors[choice.y]) return "";
+  return ["no mesh", "not known"].includes(curve.error_by) ? curve.error_by : "";
+}
+
+/** Of which curves, or muscles, something is said; nothing where it is said of all. */
+function whose(some, all) {
+  if (some.length === all.length) return "";
+  const muscles = unique(some.map((c) => c.muscle));
+  const whole = all.filter((c) => muscles.includes(c.muscle)).length === some.length;
+  const names = whole ? muscles : some.map((c) => c.label);
+  return `${names.slice(0, 3).join("; ")}${names.length > 3 ? ` and ${names.length - 3} more` : ""}: `;
 }
 
 function row(label, value, error, said, cell = "td") {
