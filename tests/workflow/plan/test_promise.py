@@ -214,6 +214,19 @@ def test_a_folded_tube_is_refined_no_further(meshes, monkeypatch):
     assert kept(meshes, solver, 0.01).rung == "solid, finer"
 
 
+def test_of_a_pushed_muscle_like_ones_say_less(meshes, monkeypatch):
+    guessed(monkeypatch, solid=0.002, solid_finer=0.0019)
+    assert kept(meshes, Solver(meshes), 0.005).by == "estimated from 99 like muscles"
+    pressed = {"solid, coarser": 0.9, "solid": 0.9}
+    solver = Solver(meshes, det_f=pressed, solid_coarser=0.002)
+    end = kept(meshes, solver, 0.005)
+    assert [name for name, _ in solver.asked] == ["solid", "solid, coarser"]
+    assert (end.rung, end.holds, end.by) == ("solid", True, "measured here by solid, coarser")
+    by_like = end.verdicts["solid, finer"]
+    assert by_like.error == pytest.approx(3 * 2 * 0.0019)
+    assert not by_like.holds
+
+
 @pytest.mark.parametrize(("det_f", "force"), [(0.7, 10.0), (0.8, -10.0)])
 def test_a_tube_that_pulls_or_is_hardly_pressed_is_refined(meshes, monkeypatch, det_f, force):
     guessed(monkeypatch)
