@@ -16,6 +16,7 @@ from solver.load_path import CONTRACTION_LIMITS, LoadPath, PathKind
 from solver.models import MODELS
 from solver.record import Solution
 from solver.status import StateStatus
+from workflow.answers import words
 from workflow.answers.quantities import CONTRACTION, FORCE, KINDS, PRESSURE, read
 from workflow.answers.quick import Quick
 from workflow.answers.store import Store
@@ -33,6 +34,7 @@ ROUNDS, NEAR = 10, 5e-7  # solves for a pressure, and its last change [MPa]
 TRIED = (0.1, 0.2, 0.4, 0.7, 1.0, 2.0, 4.0)  # MPa, in search of the largest contraction
 DIGITS = 10  # of a contraction or pressure that is computed, not written
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
+GUESS = "its error is a guess: models have not been compared on a muscle like this one"
 UNIT = {PRESSURE: "MPa", CONTRACTION: "1", FORCE: "N"}
 
 
@@ -235,7 +237,8 @@ class _Question:
             variant = replace(variant, numerics=numerics)
         notes: tuple[str, ...] = ()
         if not model_choice.is_enough(choice.chosen, tolerance):
-            notes = (f"no model is known to be within {tolerance:g}; this is the most exact",)
+            within = f"within {plain(100 * tolerance, 3)} %"
+            notes = (f"no model is known to be {within}; this is the most exact",)
         return choice.chosen.rung.name, variant, notes
 
     def _scene(self, about: Mapping[str, float], tolerance: float | None = None) -> Scene:
@@ -292,7 +295,11 @@ class _Question:
             thread_force=tension,
             thread_share=tension / strength if strength else math.nan,
             rubber_stretch=state["rubber_stretch_max"],
-            notes=(*notes, *self._notes(found), *filter(None, (from_others, *solution.notes))),
+            notes=(
+                *notes,
+                *self._notes(found),
+                *filter(None, (from_others, *map(words.of_state, solution.notes))),
+            ),
             case=case.key,
             solves=sum(self.store.solves.values()),
         )
@@ -312,7 +319,7 @@ class _Question:
         status = solution.state_status[0]
         if status not in VALID:
             why = solution.notes[0] or solution.reason
-            raise _Missing(f"{model} finds no such state ({why})")
+            raise _Missing(f"{model} finds no such state: {words.no_state(why)}")
         return case, judged(case, solution, studied.limits)
 
     def _at_force(
@@ -366,7 +373,7 @@ class _Question:
         measured = effect_states.at(case, at, model_choice.steps(rung))
         if measured is None and (guess := like_muscles.guess(case, rung)):
             return guess.high + model_choice.smearing(self.study, scene), ""
-        note = "" if measured else "its error is a guess: no muscle like this one was measured"
+        note = "" if measured else GUESS
         estimates = model_choice.estimates(self.study, scene, measured)
         return next((e.error for e in estimates if e.rung.name == rung), math.nan), note
 

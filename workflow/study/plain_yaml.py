@@ -81,7 +81,10 @@ def read(text: str) -> Node:
         found = reader.document()
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else None
-        raise UnreadableText([*reader.problems, (line, str(error.problem))]) from None
+        problem = str(error.problem)
+        if line and "\t" in text.split("\n")[line - 1] and "cannot start any token" in problem:
+            problem = "a tab stands here, where YAML takes blanks only"
+        raise UnreadableText([*reader.problems, (line, problem)]) from None
     except yaml.YAMLError as error:
         said = str(error).splitlines()[0]
         raise UnreadableText([*reader.problems, (None, said)]) from None

@@ -43,7 +43,10 @@ from workflow.study.values import POSSIBLE, expand, is_possible
 DATA = ("solver/models/*/__init__.py", "solver/models/*/model.py")
 LONGEST_NAME, LONGEST_TITLE = 64, 200
 NAME = re.compile(rf"[A-Za-z0-9_][A-Za-z0-9_.-]{{0,{LONGEST_NAME - 1}}}")
-NAME_RULE = f"letters, digits, _ . and -, at most {LONGEST_NAME}, not beginning with . or -"
+NAME_RULE = (
+    f"letters, digits, _ . and -, at most {LONGEST_NAME}, not beginning with . or -; letters are "
+    "those from a to z and A to Z"
+)
 ASKED = (  # those from stress on are solved for or written only when asked for
     "force",
     "contraction",

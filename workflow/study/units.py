@@ -1,11 +1,15 @@
 """Values that look as if they were given in another unit, and the guess in which."""
 
+import re
 from dataclasses import dataclass, field
 
 from solver.rubber import LAWS
 from workflow.study.values import is_possible
 
+WRITTEN = re.compile(r"([-+]?\d+(?:[.,]\d+)?) ?([^\W\d]*|%|°)")  # a number and perhaps a unit
 LENGTHS = {"m": 1e3, "um": 1e-3}  # in mm
+CM = {"cm": 10.0}  # of what is written with its unit; nobody means 0.3 cm by 0.3
+DEGREES = ("°", "deg", "degree")
 STRESSES = {"kPa": 1e-3, "Pa": 1e-6}  # in MPa
 
 
@@ -80,4 +84,19 @@ def guess(key: object, value: object) -> str:
     values = value if isinstance(value, list | tuple) else [value]
     numbers = [v for v in values if is_possible(v)]
     found = [usual.guess(v) for v in numbers] if usual else []
+    found += [_written(usual, v) for v in values if isinstance(v, str)] if usual else []
     return next((said for said in found if said), "")
+
+
+def _written(usual: Usual, text: str) -> str:
+    """What a text was meant to be: a number with a decimal comma, or one with its unit."""
+    parts = WRITTEN.fullmatch(text.strip())
+    if parts is None:
+        return ""
+    number, unit = parts[1].replace(",", "."), parts[2]
+    others = usual.others | (CM if usual.unit == "mm" else {})
+    if unit in others:
+        size = float(number) * others[unit]
+        return f"{number} {unit}, that is {size:.6g} {usual.unit}".rstrip()
+    own = {"", usual.unit, *(DEGREES if usual.unit == "degrees" else ())}
+    return f"{number}, with a decimal point and without a unit" if unit in own else ""

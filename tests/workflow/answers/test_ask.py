@@ -98,7 +98,7 @@ def test_its_error_is_that_of_its_state(ask, study):
     assert off < above.error < 0.02 * 1000
     assert not above.notes
     soft = answers.ask("thin_2mm", pressure="0.3MPa", contraction="5%", study=load_library())
-    assert "no muscle like this one was measured" in soft.notes[0]
+    assert "compared on a muscle like this one" in soft.notes[0]
 
 
 def test_its_error_covers_the_more_exact_model(ask):

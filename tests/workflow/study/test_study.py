@@ -73,7 +73,16 @@ REFUSED = [
     ("    material: nbr\n", "", ONE + "material", "must be given"),
     ("    layer_depths: [0.3, 0.9]\n", "", ONE + "layer_depths", "must be given"),
     ("    thread_stiffness: 315\n", "", ONE + "thread_stiffness", "must be given"),
-    ("length: 300", "length: 300 mm", ONE + "length", "valid number"),
+    (
+        "length: 300",
+        "length: 300 mm",
+        ONE + "length",
+        "perhaps: 300, with a decimal point and with",
+    ),
+    ("length: 300", "length: 30 cm", ONE + "length", "perhaps: 30 cm, that is 300 mm"),
+    ("wall_thickness: 2", "wall_thickness: 2,5", ONE + "wall_thickness", "perhaps: 2.5, with a"),
+    ("pressure: [0.2, 0.3]", "pressure: [2 bar, 3 bar]", FIG, "perhaps: 2 bar, that is 0.2 MPa"),
+    ("  fig04:", "  müskel:", "scenes.müskel is no name", "a to z"),
     ("length: 300", 'length: "300"', ONE + "length", "valid number"),
     ("length: 300", "length: true", ONE + "length", "valid number"),
     ("length: 300", "length: .nan", ONE + "length", "finite number"),
@@ -168,7 +177,7 @@ REFUSED = [
     ("muscles:\n", "muscles: {}\nmuscels:\n", "muscels", "nearest: muscles"),
     ("limits: {wall_time: 60, memory: 500}", "limits: null", "limits", "a mapping"),
     ("[one]", "[one", "study.yaml:", "expected"),
-    ("materials:", "\tmaterials:", "study.yaml:1", ""),
+    ("materials:", "\tmaterials:", "study.yaml:1", "a tab stands here"),
     ("materials:", "materials: !!python/object:os.system", "study.yaml", "tag"),
 ]
 
