@@ -172,6 +172,16 @@ def read_one(key: str, label: str, folder: Path = FOLDER) -> tuple[Case, Solutio
     return case, solution
 
 
+def found(key: str, folder: Path = FOLDER) -> tuple[Case, Solution] | None:
+    """Case and solution of a key; None if there is no record of it that can be read."""
+    if not path_of(key, folder).exists():
+        return None
+    try:
+        return read_one(key, key, folder)
+    except StudyError:
+        return None
+
+
 def status(key: str, label: str) -> str:
     """Status in the record of a case, or why there is none: ``not solved``, ``damaged``."""
     if not path_of(key).exists():

@@ -1,7 +1,7 @@
 """What ``muscle explain`` says of every scene: its wishes, what it gets, and why."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import isfinite, isnan
+from math import isfinite, isnan, nan
 from typing import Any
 
 from geometry.readable import plain
@@ -9,20 +9,26 @@ from solver.case import Case
 from solver.effects import EFFECTS
 from solver.load_path import PathKind
 from solver.models import MODELS
-from workflow.plan import effect_costs, like_muscles, model_choice
-from workflow.plan.judged import FOLLOWS, ZERO
+from workflow.plan import effect_costs, like_effects, like_muscles, model_choice, worth
+from workflow.plan.judged import FOLLOWS, ZERO, of_scene
 from workflow.plan.like_muscles import COVERAGE, Guess
 from workflow.plan.model_choice import Choice, Estimate
 from workflow.plan.plan import Place, Plan, PlannedCase
 from workflow.plan.promise import Promise
+from workflow.plan.worth import Known, Measured
 from workflow.study.schema import HELD_KEY, SWEPT_KEY, Scene
 
 Outcomes = Callable[[str], Mapping[str, Any] | None]  # how a climb has ended, by its key
 
 
-def lines(plan: Plan, outcome: Outcomes = lambda _: None) -> Iterator[str]:
-    """The whole text, line by line; ``outcome`` is asked for climbs that have ended."""
-    yield f"effects: {effect_costs.origin()}"
+def lines(
+    plan: Plan, outcome: Outcomes = lambda _: None, known: Known = lambda _: None
+) -> Iterator[str]:
+    """The whole text, line by line.
+
+    ``outcome`` is asked for climbs that have ended, ``known`` for the records that there are.
+    """
+    yield f"effects: {effect_costs.origin()}; of like muscles: {like_effects.origin()}"
     if plan.promises:
         yield f"like muscles: {like_muscles.origin()}"
     for name, places in plan.scenes.items():
@@ -41,12 +47,14 @@ def lines(plan: Plan, outcome: Outcomes = lambda _: None) -> Iterator[str]:
         if climbs:
             for key, climbed in climbs.items():
                 yield from _climb(climbed, outcome(key))
-            yield from _of_paper(plan, scene)
+            yield from _worth(plan, scene, places, outcome, known)
             continue
         yield f"  regimes  {', '.join(model_choice.regimes(plan.study, scene))}"
         yield from _models(scene, choice, model_choice.estimates(plan.study, scene))
         for model, own in cases.items():
             yield from _effects(model, own, scene)
+        if not scene.in_time:
+            yield from _worth(plan, scene, places, outcome, known)
         yield from _cases(plan, name, places)
 
 
@@ -204,19 +212,67 @@ def _share(error: float) -> str:
     )
 
 
-def _of_paper(plan: Plan, scene: Scene) -> Iterator[str]:
-    """What else is left out: measured on the muscle of the paper alone."""
-    assert scene.path is not None
-    known, name = effect_costs.load(), PathKind(scene.kind).follows
+def _worth(
+    plan: Plan, scene: Scene, places: Mapping[Place, str], outcome: Outcomes, known: Known
+) -> Iterator[str]:
+    """What leaving out each effect is worth on these curves: by like muscles, and measured here."""
+    curves: dict[tuple[str, float], dict[str, Case]] = {}
+    tried: dict[tuple[str, float], list[str]] = {}  # keys of what climbs have asked for
+    carried: set[str] = set()
+    for place, key in places.items():
+        asked, end = plan.cases[key], outcome(key)
+        rungs = asked.promise.rungs if asked.promise else {"": asked.case}
+        curves.setdefault((place.muscle, place.held), {}).update({c.key: c for c in rungs.values()})
+        tried.setdefault((place.muscle, place.held), []).extend(end["seconds"] if end else ())
+        taken = (end["rung"] if end else asked.promise.start) if asked.promise else ""
+        carried.update(rungs[taken].active_effects)
+    judged = [name for name in of_scene(scene.quantities) if name != ZERO]
+    follows = PathKind(scene.kind).follows
+    about = " or ".join(follows if name == FOLLOWS else name.replace("_", " ") for name in judged)
+    most = f", the most of {len(curves)} curves" if len(curves) > 1 else ""
+    yield f"  effects  change of {about} by leaving one out, of the largest{most}; > is carried"
+    cases = [list(of.values()) for of in curves.values()]
     found = [
-        f"{effect} {_share(value)}"
-        for regime, path, effect in known
-        if (regime, path) == ("normal", scene.kind)
-        and effect in EFFECTS
-        and effect not in model_choice.CAPS
-        and not isnan(value := getattr(known[regime, path, effect], name))
+        worth.measured(list(of.values()), known, judged, tried[curve])
+        for curve, of in curves.items()
     ]
-    yield f"  effects  leaving out, on the paper's muscle and not this one: {', '.join(found)}"
+    for effect in dict.fromkeys(e for each in cases for e in worth.effects_of(each[0])):
+        guesses = [like_effects.guess(each[0], effect, judged) for each in cases]
+        measured = [each[effect] for each in found if effect in each]
+        mark = ">" if effect in carried else " "
+        said = _guessed_effect(guesses, effect, scene.kind, follows)
+        yield f"    {mark} {effect:17} {said}; {_measured_effect(measured, effect, len(cases))}"
+
+
+def _guessed_effect(
+    guesses: Sequence[like_effects.Guess | None], effect: str, path: str, follows: str
+) -> str:
+    """By like muscles, of the curve where it is most."""
+    there = [each for each in guesses if each is not None]
+    if not there:
+        of_paper = effect_costs.load().get(("normal", path, effect))
+        value = getattr(of_paper, follows, nan)
+        more = "" if isnan(value) else f" (on the paper's muscle {_share(value)})"
+        return f"not known of like muscles{more}"
+    most = max(there, key=lambda each: each.high)
+    where = "" if len(there) == len(guesses) else f", of {len(there)} curves"
+    return (
+        f"half of {most.count} like muscles {_share(most.median)}, {100 * COVERAGE:g} % at most "
+        f"{_share(most.high)}{where}"
+    )
+
+
+def _measured_effect(measured: Sequence[Measured], effect: str, curves: int) -> str:
+    """By records of this curve, of the one where it is most."""
+    if not measured:
+        return "not measured here"
+    most = max(measured, key=lambda each: each.change)
+    others = [other for other in most.effects if other != effect]
+    together = f" with {', '.join(others)}" if others else ""
+    where = f" on {len(measured)} of them" if curves > len(measured) else ""
+    lost = f", {_counted(most.lost, 'state')} lost" if most.lost else ""
+    by = most.by[0] if most.by[0] == most.by[1] else f"{most.by[1]} against {most.by[0]}"
+    return f"measured{where}{together} {_share(most.change)} ({by}{lost})"
 
 
 def _effects(model: str, cases: Sequence[Case], scene: Scene) -> Iterator[str]:
@@ -228,12 +284,9 @@ def _effects(model: str, cases: Sequence[Case], scene: Scene) -> Iterator[str]:
         for name in carried
         if name not in on
     ]
-    absent = [name for name in EFFECTS if name not in carried]
     yield f"  {model:10}on: {', '.join(on) or 'none'}"
     if off:
         yield f"{'':11}off: {', '.join(off)}"
-    if absent:
-        yield f"{'':11}left out with the model: {', '.join(absent)}"
 
 
 def _cases(plan: Plan, name: str, places: dict[Place, str]) -> Iterator[str]:

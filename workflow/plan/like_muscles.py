@@ -18,7 +18,7 @@ import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from math import ceil, cos, exp, inf, log, nan, radians, sqrt
+from math import ceil, cos, exp, inf, log, nan, radians, sin, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +34,7 @@ CURVES = Path(__file__).with_suffix(".csv")
 STATES = CURVES.with_name("like_states.csv")
 DATA = ("workflow/plan/like_muscles.csv", "workflow/plan/like_states.csv")
 COVERAGE = 0.95  # share of like muscles, or of their states, that have at most what is said
-OF_STATES = 0.93  # of states, before the largest is raised to that of the curve
+OF_STATES = 0.93  # of states, where the largest is then raised to that of the curve
 RIDGE = 0.1  # of features whose spread is 1: as a tenth of a muscle that says nothing
 MOST = 50.0  # of a logarithm: far from the middle of the table a spread says nothing
 LEAST = 1e-7  # share: of smaller errors no law is fitted
@@ -138,13 +138,13 @@ def guess(case: Case, rung: str, judged: Sequence[str] = (FOLLOWS,)) -> Guess | 
 
 def _guess(case: Case, rung: str, quantity: str) -> Guess | None:
     table = _curves().get(rung)
-    if table is None or quantity not in (FOLLOWS, *QUANTITIES) or not _is_like(case):
+    if table is None or quantity not in (FOLLOWS, *QUANTITIES) or not is_like(case):
         return None
     law = _law(rung, quantity)
     kind = str(case.path.kind)
     if kind not in law.widths:
         return None
-    value, wider = law.at(_features(likeness.groups(case), kind)[None], kind)
+    value, wider = law.at(curve_features(likeness.groups(case), kind)[None], kind)
     if np.isnan(value[0]):
         return None
     median = exp(min(value[0] + wider[0] * law.quantile(0.5), MOST))
@@ -168,7 +168,7 @@ def mesh_errors(case: Case, solution: Solution, rung: str, quantity: str) -> tup
     """
     count = case.path.states
     table = _states().get(rung)
-    if table is None or quantity not in (FOLLOWS, *QUANTITIES) or not _is_like(case):
+    if table is None or quantity not in (FOLLOWS, *QUANTITIES) or not is_like(case):
         return np.full(count, nan), 0
     law = _state_law(rung, quantity)
     groups, kind = likeness.groups(case), str(case.path.kind)
@@ -176,24 +176,30 @@ def mesh_errors(case: Case, solution: Solution, rung: str, quantity: str) -> tup
     known = _are_like(states, rung) & np.isfinite(list(groups.values())).all()
     found = np.full(count, nan)
     if known.any():
-        of_curve = _features(groups, kind)
+        of_curve = curve_features(groups, kind)
         at = [{name: float(v[k]) for name, v in states.items()} for k in np.flatnonzero(known)]
-        features = np.array([_state_features(of_curve, groups | each, kind) for each in at])
+        features = np.array([_state_features(rung, of_curve, groups | each, kind) for each in at])
         value, wider = law.at(features, kind)
-        errors = np.exp(np.minimum(value + wider * law.quantile(OF_STATES), MOST))
+        share = OF_STATES if _is_raised(case) else COVERAGE
+        errors = np.exp(np.minimum(value + wider * law.quantile(share), MOST))
         found[known] = _up_to(errors, case, rung, quantity)
     return found, _count(rung)
 
 
 def _up_to(errors: Array, case: Case, rung: str, quantity: str) -> Array:
     """Errors at states with the largest raised to that of the curve, smaller ones by less."""
-    if MODELS[case.model].fuller:  # what is known of its curves is not its mesh's alone
+    if not _is_raised(case):
         return errors
     whole = _guess(case, rung, quantity)
     largest = np.nanmax(errors, initial=0.0)
     if whole is None or not 0 < largest < whole.high:
         return errors
     return np.asarray(errors * (whole.high / largest) ** (errors / largest))
+
+
+def _is_raised(case: Case) -> bool:
+    """Not where what is known of its curves is of more than its mesh: of what it leaves out too."""
+    return not MODELS[case.model].fuller
 
 
 def origin() -> str:
@@ -219,7 +225,7 @@ def ranges() -> dict[str, tuple[float, float]]:
     return {n: (min(float(r[n]) for r in rows), max(float(r[n]) for r in rows)) for n in names}
 
 
-def _is_like(case: Case) -> bool:
+def is_like(case: Case) -> bool:
     """Whether all groups of a curve are in the ranges of the table, or hardly beyond."""
     groups = likeness.groups(case)
     for name, (low, high) in _ranges().items():
@@ -260,7 +266,8 @@ def _ranges() -> dict[str, tuple[float, float]]:
     return ranges()
 
 
-def _features(groups: Mapping[str, float], kind: str) -> Array:
+def curve_features(groups: Mapping[str, float], kind: str) -> Array:
+    """What a power law of a curve is of: its groups on a kind of path, and terms of these."""
     found = [log(groups[name]) for name in LOGARITHMIC] + [groups[name] for name in PLAIN]
     isometric, isotonic = float(kind == "isometric"), float(kind == "isotonic")
     free = 1 - 1 / (sqrt(3) * cos(radians(groups["angle"])))  # contraction of a thin net
@@ -270,12 +277,27 @@ def _features(groups: Mapping[str, float], kind: str) -> Array:
     return np.array([*found, isometric, isotonic, *more, *own])
 
 
-def _state_features(of_curve: Array, row: Mapping[str, float], kind: str) -> Array:
+def _state_features(rung: str, of_curve: Array, row: Mapping[str, float], kind: str) -> Array:
     own = [row[name] for name in OF_STATE]
     ratio = row["at"] / row["pressure"]
     own += [row["pull"] ** 2, row["contraction"] ** 2, ratio, row["contraction"] * row["angle"]]
+    if MODELS[rung.partition(",")[0]].crumples:
+        own.append(_near_crumpling(row))
     isometric = [float(kind == "isometric") * value for value in own]
     return np.concatenate([of_curve, own, isometric])
+
+
+def _near_crumpling(row: Mapping[str, float]) -> float:
+    """Pressure on the section of the bore by what the wall bears along its axis, at most 10.
+
+    A wall that is pushed bears less than that, and crumples where it bears none; meshes differ most
+    before that. The bore is that of a thin net.
+    """
+    angle, shorter = radians(row["angle"]), 1 - row["contraction"]
+    bore = (1 - (cos(angle) * shorter) ** 2) / sin(angle) ** 2  # section, by its first
+    pressed = row["at"] * bore
+    borne = pressed + row["pull"] * row["pressure"]
+    return pressed / max(borne, 0.1 * pressed) if pressed > 0 else 0.0
 
 
 def _leverage(x: Array, inverse: Array) -> Array:
@@ -290,7 +312,7 @@ def _with_one(features: Array) -> Array:
 def _nearest(case: Case, rung: str, count: int = 12) -> list[int]:
     """The muscles of the table that are most like one, on the same kind of path."""
     kind = str(case.path.kind)
-    own = _features(likeness.groups(case), kind)
+    own = curve_features(likeness.groups(case), kind)
     rows, kinds = _rows(rung)
     spread = np.where(rows.std(0) > 0, rows.std(0), 1.0)
     away = (((rows - own) / spread) ** 2).sum(1)
@@ -303,13 +325,13 @@ def _rows(rung: str) -> tuple[Array, NDArray[np.str_]]:
     """Features of all muscles of the table, and their kinds of path."""
     table = _curves()[rung]
     kinds = np.array([row["path"] for row in table])
-    return np.array([_features(_numbers(row), row["path"]) for row in table]), kinds
+    return np.array([curve_features(groups_of(row), row["path"]) for row in table]), kinds
 
 
 @cache
 def _law(rung: str, quantity: str) -> Law:
     rows = [r for r in _curves()[rung] if 0 <= float(r[quantity] or nan) < inf]
-    features = np.array([_features(_numbers(row), row["path"]) for row in rows])
+    features = np.array([curve_features(groups_of(row), row["path"]) for row in rows])
     errors = np.array([float(row[quantity]) for row in rows])
     blocks, kinds = (np.array([row[name] for row in rows]) for name in ("curve", "path"))
     return Law.fit(features, errors, blocks, kinds)
@@ -318,14 +340,15 @@ def _law(rung: str, quantity: str) -> Law:
 @cache
 def _state_law(rung: str, quantity: str) -> Law:
     rows = [r for r in _states()[rung] if float(r[quantity] or nan) >= 0]
-    found = ((_numbers(row), row["path"]) for row in rows)
-    features = np.array([_state_features(_features(row, k), row, k) for row, k in found])
+    found = ((groups_of(row), row["path"]) for row in rows)
+    features = np.array([_state_features(rung, curve_features(row, k), row, k) for row, k in found])
     errors = np.array([float(row[quantity]) for row in rows])
     blocks, kinds = (np.array([row[name] for row in rows]) for name in ("curve", "path"))
     return Law.fit(features, errors, blocks, kinds)
 
 
-def _numbers(row: Mapping[str, str]) -> dict[str, float]:
+def groups_of(row: Mapping[str, str]) -> dict[str, float]:
+    """Of a row of a table."""
     names = (*LOGARITHMIC, *PLAIN, *OF_STATE)
     return {name: float(row[name]) for name in names if name in row}
 

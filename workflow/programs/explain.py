@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from workflow.data import bench, settled
+from workflow.data import bench, records, settled
 from workflow.figures import update
 from workflow.plan import explain
 from workflow.plan.plan import Plan, read
@@ -23,7 +23,7 @@ def run(given: argparse.Namespace) -> int:
     plan = read(given.study, bench.refused)
     for line in plan.study.warnings:
         print(f"warning: {line}", file=sys.stderr)
-    for line in explain.lines(plan, settled.outcome):
+    for line in explain.lines(plan, settled.outcome, records.found):
         print(line)
     for line in bench.understood(plan.study):
         print(line)

@@ -112,7 +112,7 @@ def test_in_every_range_and_yet_like_none(make_case, muscle, rung):
     )
     path = LoadPath(kind="isometric", held=0.1, stops=stops)
     case = make_case(model="solid", muscle=finger, path=path)
-    assert like_muscles._is_like(case)
+    assert like_muscles.is_like(case)
     assert like_muscles.guess(case, rung) is None
 
 
@@ -159,3 +159,27 @@ def test_nothing_is_guessed_where_threads_stretch_by_a_fifth(make_case):
     assert likeness.thread_stretch(likeness.groups(soft)) == pytest.approx(0.21)
     assert like_muscles.guess(soft, "solid") is None
     assert like_muscles.guess(case, "solid") is not None
+
+
+def test_a_membrane_near_crumpling_has_the_larger_error(make_case):
+    """Pushed with nine tenths of what the pressure on its bore pulls with."""
+    row = dict(zip(("at", "pressure", "angle", "contraction"), (0.7, 0.7, 24.8, 0.2), strict=True))
+    bore = like_muscles._near_crumpling(row | {"pull": 0.0})
+    assert bore == pytest.approx(1)
+    section = (1 - (np.cos(np.radians(24.8)) * 0.8) ** 2) / np.sin(np.radians(24.8)) ** 2
+    for pull, near in ((-0.9 * section, 10), (-section, 10), (section, 0.5)):
+        assert like_muscles._near_crumpling(row | {"pull": pull}) == pytest.approx(near)
+    assert like_muscles._near_crumpling(row | {"at": 0.0, "pull": 1.0}) == 0
+    case = make_case(path=LoadPath(kind="isobaric", held=0.3, stops=(0.0, 0.2)))
+    errors = {}
+    for force in (60.0, -60.0):
+        states = converged(
+            unreached(2)
+            | {
+                "force": np.array([600.0, force]),
+                "contraction": np.array([0.0, 0.2]),
+                "pressure": np.array([0.3, 0.3]),
+            }
+        )
+        errors[force] = mesh_error.error(case, states, "force")[1]
+    assert errors[-60.0] > 1.5 * errors[60.0] > 0

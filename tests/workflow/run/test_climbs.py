@@ -1,11 +1,13 @@
 """Climbs inside a batch: what they leave, what they find again, and what stands in its place."""
 
 import json
+import re
 from math import isnan
 from pathlib import Path
 
 import pytest
 
+from solver.effects import EFFECTS
 from solver.freefem import Limits
 from workflow.analyses.ladder import take_over
 from workflow.data import dataset, records, settled
@@ -123,6 +125,27 @@ def test_explain_says_what_was_guessed_and_what_was_measured(folder):
     after = "\n".join(lines(planned(), settled.outcome))
     assert "membrane is proved" in after
     assert "s of the processor" in after
+
+
+def test_explain_says_what_effects_are_worth_on_this_muscle(folder):
+    """Guessed before, and measured where two records differ by them; each scene on one screen."""
+    before, after = (
+        "\n".join(lines(planned(), settled.outcome, known))
+        for known in (lambda key: None, records.found)
+    )
+    assert before.count("by leaving one out") == 3
+    assert before.count("not measured here") == 3 * len(EFFECTS)
+    for effect in EFFECTS:
+        said = [line for line in before.splitlines() if re.match(rf"    [> ] {effect} ", line)]
+        assert len(said) == 3
+        known = [re.search(r"half of (\d+) like muscles", line) for line in said]
+        assert all(known) if effect != "discrete_threads" else not any(known)
+    loose = after.partition("\nloose: ")[2].partition("\n\n")[0]
+    together = re.search(r"    +cap_geometry .*measured with compressibility (\S+) %", loose)
+    assert 0.05 < float(together[1]) < 1  # of the paper's muscle it is 0.25 %
+    assert "membrane against solid" in loose
+    assert re.search(r"discrete_threads +not known of like muscles \(on the paper's muscle", loose)
+    assert all(len(scene.splitlines()) <= 45 for scene in after.split("\n\n"))
 
 
 def test_what_has_not_ended_is_asked_for(folder):

@@ -39,7 +39,7 @@ def take_over(tables: Path, curves: Path = CURVES, states: Path = STATES) -> Non
             out.write(origin)
             writer = csv.DictWriter(out, rows[0], lineterminator="\n")
             writer.writeheader()
-            writer.writerows({n: _short(n, value) for n, value in row.items()} for row in rows)
+            writer.writerows({n: shortened(n, value) for n, value in row.items()} for row in rows)
 
 
 def cost_of(case: str) -> float:
@@ -53,7 +53,7 @@ def cost_of(case: str) -> float:
     return found
 
 
-def _short(name: str, value: str) -> str:
+def shortened(name: str, value: str) -> str:
     """A number with few digits; texts and whole numbers as they are."""
     try:
         return value if name == "curve" else f"{float(value):{DIGITS}}"

@@ -1,0 +1,1 @@
+"""What leaving out an effect changes on muscles of all kinds."""
