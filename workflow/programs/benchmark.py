@@ -53,7 +53,7 @@ def run(given: argparse.Namespace) -> int:
         given.muscles,
         solid,
         tables / "times.csv",
-        benchmark.machine("one run each"),
+        benchmark.machine("one run of each study, the least of several of the solid"),
         print,
     )
     benchmark.make(curves, given.runs, BENCHMARK, tables / "benchmark.csv")

@@ -104,6 +104,11 @@ def spare_pandas():
     PersistenceBase._serialize_param = property(lambda self: self._serialize_param_builtin)
 
 
+def where_results_are():
+    page = RESULTS / "explorer.html"
+    return f"Results are in {RESULTS}" + (f"; open {page} in a browser" if page.exists() else "")
+
+
 def interrupted(*_):
     """Ctrl-C: end with one sentence; Snakemake tidies up and is not heard."""
     if not PROGRESS:
@@ -136,7 +141,7 @@ onstart:
 
 
 onsuccess:
-    PROGRESS.pop().close(f"Results are in {RESULTS}; open {RESULTS / 'explorer.html'} in a browser")
+    PROGRESS.pop().close(where_results_are())
 
 
 onerror:

@@ -135,9 +135,10 @@ class Progress(logging.Handler):
         return left / min(self.cores, max(len(self.waiting), 1))
 
     def line(self) -> str:
-        """Where the run stands."""
+        """Where the run stands; empty where nothing is to be solved and nothing goes on."""
         done = len(self.cases) - len(self.waiting)
-        parts = [f"{done} of {len(self.cases)} cases solved, {self.failed} failed"]
+        known = f"{done} of {len(self.cases)} cases solved, {self.failed} failed"
+        parts = [known] if self.cases else []
         left = self.seconds_left()
         if self.waiting and left is not None:
             parts.append(f"about {_duration(left)} left to solve")
@@ -177,7 +178,7 @@ class Progress(logging.Handler):
     def _say(self, text: str) -> None:
         line = f"{time.strftime('%H:%M:%S')}  {text}\n"
         self.changed, self.spoke = False, time.monotonic()
-        for stream in filter(None, (self.log, self.terminal)):
+        for stream in filter(None, (self.log, self.terminal) if text else ()):
             try:
                 stream.write(line)
                 stream.flush()

@@ -153,3 +153,12 @@ def test_errors_are_no_chatter(batch):
     assert is_no_chatter(message(text="Shutting down, this might take some time."))
     assert not is_no_chatter(batch.begin(1))
     assert not is_no_chatter(message(text="Select jobs to execute..."))
+
+
+def test_a_run_that_solves_nothing_says_nothing_of_cases(tmp_path):
+    log = tmp_path / "progress.log"
+    run = Progress({}, (), cores=1, log=log, terminal=None)
+    run.emit(message(LogEvent.JOB_INFO, jobid=1, rule_name="map", rule_msg="Tabulating a map"))
+    assert run.line() == "now: Tabulating a map"
+    run.close()
+    assert log.read_text() == ""

@@ -45,6 +45,7 @@ EXPECTED = {"membrane": (0.12, 0.2), "solid": (0.3, 2.2), "cell": (40.0, 2.7)}
 AROUND = 0.7  # s, for Python and the mesh of one solve, on that machine
 STATES = 21
 LONG = 10.0  # s there; what takes longer is run once, as it varies less
+FIRST = 0.03  # share of a run of all from which is said how long the rest will take
 OF_SOLID = {  # rows: refinement of its default mesh
     "26 states by the solid, FreeFEM": 1,
     "26 states by the solid, refinement: 2, FreeFEM": 2,
@@ -75,9 +76,10 @@ def run(cases: Sequence[AnalysisCase], runs: int, say: Callable[[str], None]) ->
                 found[asked.case.key].append(cost)
                 spent += expected_seconds(asked.case)
                 left = (time.monotonic() - start) * (total / spent - 1)
+                more = f"; about {duration(left)} left" if spent > FIRST * total else ""
                 say(
                     f"run {number + 1} of {runs}, case {k} of {len(cases)}: {asked.label}: "
-                    f"{cost[accuracy_costs.SOLVE]:.3g} s; about {duration(left)} left"
+                    f"{cost[accuracy_costs.SOLVE]:.3g} s{more}"
                 )
     rows = [
         {"case": asked.case.key, "label": asked.label}
@@ -194,11 +196,11 @@ def write(costs: pd.DataFrame, path: Path) -> None:
     """Write a table with a note on the machine above it, whole or not at all."""
     with atomic_write(path) as beside, beside.open("w", encoding="utf-8") as stream:
         stream.writelines(f"# {line}\n" for line in machine())
-        costs.to_csv(stream, index=False)
+        costs.to_csv(stream, index=False, float_format="%.6g")
 
 
-def machine(of_runs: str = "medians") -> list[str]:
-    """What the seconds depend on, and what of several runs they are."""
+def machine(seconds: str = "medians of CPU seconds") -> list[str]:
+    """What seconds depend on, and which they are."""
     model = next(
         (
             line.partition(":")[2].strip()
@@ -216,7 +218,7 @@ def machine(of_runs: str = "medians") -> list[str]:
     return [
         f"{model}, {os.cpu_count()} cores; {platform.system()} {platform.release()}",
         f"Python {platform.python_version()}, numpy {np.__version__}, FreeFEM {version}",
-        f"{time.strftime('%Y-%m-%d')}; {load}; {of_runs} of CPU seconds",
+        f"{time.strftime('%Y-%m-%d')}; {load}; {seconds}",
     ]
 
 

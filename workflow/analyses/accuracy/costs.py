@@ -84,7 +84,8 @@ def growth(known: pd.DataFrame) -> pd.DataFrame:
     found = []
     for model in ("membrane", "solid", "cell"):
         own = known[known["model"] == model]
-        mesh = own[(own["set"] == "mesh") & (own["refinement"] > 0)]
+        family = (own["refinement"] > 0) | (model == "cell")  # whose meshes are no refinements
+        mesh = own[(own["set"] == "mesh") & family]
         steps = own[own["set"].isin(["steps", "mesh"]) & (own["mesh"] == "1/1")]
         for quantity, against, points in (
             ("after start [s]", UNKNOWNS, mesh),

@@ -81,6 +81,6 @@ def make(study: Study, runs: int, path: Path, say: Callable[[str], None]) -> Non
             say(f"steps of time, run {number + 1} of {runs}")
             least = [min(a, bench.cost(b)[SOLVE]) for a, b in zip(least, asked, strict=True)]
     with atomic_write(path) as beside, beside.open("w", encoding="utf-8") as stream:
-        stream.writelines(f"# {line}\n" for line in machine("minima"))
+        stream.writelines(f"# {line}\n" for line in machine("minima of CPU seconds"))
         table(asked, least).to_csv(stream, index=False, float_format="%.4g")
     say(f"written: {path}")
