@@ -217,15 +217,19 @@ def _worth(
 ) -> Iterator[str]:
     """What leaving out each effect is worth on these curves: by like muscles, and measured here."""
     curves: dict[tuple[str, float], dict[str, Case]] = {}
-    tried: dict[tuple[str, float], list[str]] = {}  # keys of what climbs have asked for
     carried: set[str] = set()
     for place, key in places.items():
         asked, end = plan.cases[key], outcome(key)
         rungs = asked.promise.rungs if asked.promise else {"": asked.case}
         curves.setdefault((place.muscle, place.held), {}).update({c.key: c for c in rungs.values()})
-        tried.setdefault((place.muscle, place.held), []).extend(end["seconds"] if end else ())
         taken = (end["rung"] if end else asked.promise.start) if asked.promise else ""
         carried.update(rungs[taken].active_effects)
+    more: dict[tuple[str, float], list[str]] = {curve: [] for curve in curves}
+    for key, asked in plan.cases.items():  # of these curves, in all scenes
+        end = outcome(key) if asked.promise else {"seconds": [key]}
+        for place in asked.places:
+            if end and place.group == scene.kind and (place.muscle, place.held) in more:
+                more[place.muscle, place.held].extend(end["seconds"])
     judged = [name for name in of_scene(scene.quantities) if name != ZERO]
     follows = PathKind(scene.kind).follows
     about = " or ".join(follows if name == FOLLOWS else name.replace("_", " ") for name in judged)
@@ -233,7 +237,7 @@ def _worth(
     yield f"  effects  change of {about} by leaving one out, of the largest{most}; > is carried"
     cases = [list(of.values()) for of in curves.values()]
     found = [
-        worth.measured(list(of.values()), known, judged, tried[curve])
+        worth.measured(list(of.values()), known, judged, more[curve])
         for curve, of in curves.items()
     ]
     for effect in dict.fromkeys(e for each in cases for e in worth.effects_of(each[0])):
@@ -255,7 +259,7 @@ def _guessed_effect(
         more = "" if isnan(value) else f" (on the paper's muscle {_share(value)})"
         return f"not known of like muscles{more}"
     most = max(there, key=lambda each: each.high)
-    where = "" if len(there) == len(guesses) else f", of {len(there)} curves"
+    where = "" if len(there) == len(guesses) else f", known on {len(there)} of them"
     return (
         f"half of {most.count} like muscles {_share(most.median)}, {100 * COVERAGE:g} % at most "
         f"{_share(most.high)}{where}"

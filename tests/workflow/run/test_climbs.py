@@ -144,6 +144,8 @@ def test_explain_says_what_effects_are_worth_on_this_muscle(folder):
     together = re.search(r"    +cap_geometry .*measured with compressibility (\S+) %", loose)
     assert 0.05 < float(together[1]) < 1  # of the paper's muscle it is 0.25 %
     assert "membrane against solid" in loose
+    named = after.partition("\nnamed: ")[2].partition("\n\n")[0]
+    assert f"measured with compressibility {together[1]} %" in named  # by records of the others
     assert re.search(r"discrete_threads +not known of like muscles \(on the paper's muscle", loose)
     assert all(len(scene.splitlines()) <= 45 for scene in after.split("\n\n"))
 
