@@ -18,16 +18,28 @@ from solver.memory import Memory
 from solver.numerics import KINDS, Numerics, Spread
 from solver.rubber import LAWS
 from solver.rubber.rubber_law import LEAST_KAPPA, RubberLaw
-from workflow.study import checks, design, in_time, maps, sweep, units
+from workflow.study import checks, design, figure_needs, in_time, maps, sweep, units
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import AlreadyRefused, Findings, StudyError, choices, shown
 from workflow.study.folders import DEFAULT
 from workflow.study.installation import Installation
 from workflow.study.limits import Limits
 from workflow.study.muscles import Muscles
-from workflow.study.schema import CalibrationEntry, MaterialEntry, StudyFile, VariantEntry
+from workflow.study.schema import (
+    QUANTITIES,
+    CalibrationEntry,
+    MaterialEntry,
+    Scene,
+    StudyFile,
+    VariantEntry,
+)
 from workflow.study.source import Keys, Source
 
+JUDGED = {  # quantities that a tolerance is about, by what a figure calls them
+    "inner_diameter_inflated": "inner_diameter",
+    "outer_diameter": "outer_diameter",
+    "volume": "volume",
+}
 SETTINGS = ("study", "batches")  # of --config
 MOST_BATCHES = 10**6
 
@@ -112,7 +124,7 @@ def _of(source: Source, findings: Findings | None) -> Study:
         source=source,
         muscles=muscles,
         variants=variants,
-        scenes=file.scenes,
+        scenes={name: _with_shown(scene) for name, scene in file.scenes.items()},
         calibration=file.calibration,
         rubbers=rubbers,
         design=file.design,
@@ -126,7 +138,7 @@ def _of(source: Source, findings: Findings | None) -> Study:
     study = replace(study, calibration={n: _fit(study, n) for n in study.calibration})
     study = replace(
         study,
-        scenes={n: s for n, s in file.scenes.items() if found.no_more(checks.scene(study, n))},
+        scenes={n: s for n, s in study.scenes.items() if found.no_more(checks.scene(study, n))},
         calibration={
             n: c
             for n, c in study.calibration.items()
@@ -139,6 +151,15 @@ def _of(source: Source, findings: Findings | None) -> Study:
     if findings is None:
         found.say()
     return study
+
+
+def _with_shown(scene: Scene) -> Scene:
+    """A scene whose models are to be chosen, for what its figure shows as well."""
+    if scene.figure is None or scene.models is not None or scene.path is None or scene.in_time:
+        return scene
+    shown = {JUDGED[name] for name in figure_needs.axes(scene) if name in JUDGED}
+    wanted = {*scene.quantities, *shown}
+    return scene.model_copy(update={"quantities": tuple(q for q in QUANTITIES if q in wanted)})
 
 
 def _fit(study: Study, name: str) -> CalibrationEntry:

@@ -10,11 +10,11 @@ from solver.status import StateStatus
 from workflow.analyses.analysis import Solved
 from workflow.analyses.effects import table
 from workflow.analyses.effects.cases import REGIMES, SETUPS, cases
-from workflow.plan import effect_costs, model_choice
+from workflow.plan import effect_costs, judged, model_choice
 from workflow.plan.explain import lines
 from workflow.plan.plan import plan
 from workflow.study.errors import StudyError
-from workflow.study.study import load
+from workflow.study.study import JUDGED, load
 
 STUDY = Path(__file__).parents[3] / "config/config.yaml"
 LOOSE, TIGHT = 0.05, 0.001
@@ -247,3 +247,19 @@ def valid(solution, variable):
     """Values of a variable at the stops, NaN where a state is not one."""
     good = [s in (StateStatus.CONVERGED, StateStatus.UNSTABLE) for s in solution.state_status]
     return np.where(good, solution.states[variable], np.nan)
+
+
+def test_what_a_figure_shows_is_judged(tmp_path):
+    """As if the scene had asked for it."""
+    scene = "  a: {path: isobaric, muscles: [dmsp20], pressure: 0.3, contraction: [0, 0.1]%s}\n"
+    found = {}
+    for said in (", quantities: [volume]", ", figure: {y: volume}", ""):
+        study = load(with_scene(tmp_path, scene % said))
+        found[said] = study.scenes["a"].quantities, model_choice.choose(study, study.scenes["a"])
+    asked, shown, neither = found.values()
+    assert asked[0] == shown[0] == ("volume",)
+    assert not neither[0]
+    assert asked[1].estimates == shown[1].estimates != neither[1].estimates
+    named = ", models: [geometric], figure: {y: inner_diameter_inflated}"
+    assert not load(with_scene(tmp_path, scene % named)).scenes["a"].quantities
+    assert {quantity: name for name, quantity in JUDGED.items()} == judged.QUANTITIES
