@@ -189,6 +189,7 @@ def test_a_trade_off_has_muscles_between_its_ends(tmp_path, monkeypatch):
     steps = np.diff(-force) / (force[0] - force[-1])
     assert steps == pytest.approx(0.25, abs=5e-3)
     assert "trade-off: force at 10 %: at least" in "\n".join(result.report(found[2]))
+    assert found[-1].bound.limit == pytest.approx(force.min(), rel=5e-3)  # an end is refined too
     lines = [f"{each.problem.values(each.best.x)}" for each in found]
     assert len(set(lines)) == 5
     assert len(result.draw(found, []).axes) == 2
@@ -205,6 +206,16 @@ def test_a_reserve_is_on_what_must_be_at_least(tmp_path):
     (tmp_path / "study.yaml").write_text(text)
     problem = Problem(load(tmp_path / "study.yaml"), "small")
     assert [r.limit for r in problem.requirements] == [150 * 1.2, 2]
+
+
+def test_limits_are_said_as_they_were_given_and_spans_as_they_are(tmp_path):
+    text = SMALL.replace("at_least: 150", "at_least: 12345.678", 1)
+    (tmp_path / "study.yaml").write_text(text)
+    problem = Problem(load(tmp_path / "study.yaml"), "small")
+    assert problem.requirements[0].text.endswith("at least 12345.678 N")
+    assert problem.bound(problem.objectives[0], 0.123456).text.split()[-2] == "0.1235"
+    assert result._span(24.9951, 25.0) == "24.995 to 25"
+    assert result._span(8.0, 9.0) == "8 to 9"
 
 
 def test_every_quantity_is_measured_alike_by_both_models(tmp_path, monkeypatch):

@@ -37,6 +37,8 @@ MOST = 0.5  # contraction beyond which no free contraction is looked for
 TRUTH = "solid"
 LITRE = 1e6  # mm3
 THREAD_MODULUS = 2100.0  # MPa, section 2.2 of the paper: of threads whose diameter is not given
+TRADE_OFF = "trade-off"  # the name of an objective that is bounded
+GIVEN = 10  # digits of what a user has given
 LEAST_SCALE = 0.01  # of the blocked force: what a force is judged against at least
 Array = NDArray[np.float64]
 Measures = dict[str, float]
@@ -68,7 +70,8 @@ class Requirement:
         """``force at 5 %, 0.4 MPa: at least 500 N``."""
         turned = -1 if self.measure.startswith("-") else 1
         sign = "at least" if self.sense * turned > 0 else "at most"
-        return f"{self.what}: {sign} {plain(turned * self.limit, 4)} {self.unit}".rstrip()
+        digits = 4 if self.name == TRADE_OFF else GIVEN
+        return f"{self.what}: {sign} {plain(turned * self.limit, digits)} {self.unit}".rstrip()
 
     def value(self, measures: Measures) -> float:
         """What it is, as a user would say it."""
@@ -217,7 +220,7 @@ class Problem:
         """An objective that is at most so much (of one that is to be large: at least)."""
         text = self.text_of(measure, limit).split(": ")[0]
         unit = self.text_of(measure, limit).split()[-1]
-        return Requirement("trade-off", measure, -1, limit, text, unit)
+        return Requirement(TRADE_OFF, measure, -1, limit, text, unit)
 
     def contractions(self, studied: StudiedMuscle) -> dict[float, list[float]]:
         """At which states are needed, by pressure: from none to the largest that is required."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from geometry.files import atomic_write
 from geometry.readable import plain
 from workflow.answers import sheet, sheet_files
-from workflow.answers.design.problem import TRUTH, Problem
+from workflow.answers.design.problem import GIVEN, TRUTH, Problem
 from workflow.answers.design.search import MISSED, Found, Missed, Trial, looked_for
 from workflow.answers.sheet import Sheet
 from workflow.answers.store import Store
@@ -25,12 +25,15 @@ from workflow.figures.style import COLUMN_WIDTH, FULL, SERIES, labelled, legend,
 from workflow.study.contents import Study
 
 ACTIVE = 2e-3  # share of its limit within which a requirement decides the muscle
+END = 2 * MISSED  # share by which the end of a trade-off may be off the best by one objective
 SHARES = (0.25, 0.5, 0.75)  # of the way from one end of a trade-off to the other
 
 
 def designed(study: Study, name: str) -> list[Found]:
     """What a design gives: one result, or of two objectives those of the trade-off between them.
 
+    Each end is the best by one objective and, of those that are within ``END`` of it, the best
+    by the other: where one objective leaves much open it alone would end far from the curve.
     Between its ends the first objective is as small as may be where the second is at most so much,
     in equal steps: unlike the least of a weighted sum that reaches every part of the curve, as the
     curve may be hollow. Muscles that are no better than another by either objective are left out.
@@ -43,13 +46,26 @@ def designed(study: Study, name: str) -> list[Found]:
         return [first if first.best is None else last]
     if np.array_equal(first.best.x, last.best.x):
         return [replace(first, agreed=True)]  # there is nothing between them
+    first, last = _ended(problem, store, first, 0), _ended(problem, store, last, 1)
     measure = problem.objectives[1]
+    assert first.best is not None
+    assert last.best is not None
     start, end = first.best.measures[measure], last.best.measures[measure]
     between = [
         looked_for(problem, store, 0, problem.bound(measure, start + share * (end - start)))
         for share in SHARES
     ]
     return _undominated([first, *between, last])
+
+
+def _ended(problem: Problem, store: Store, end: Found, objective: int) -> Found:
+    """Of the muscles that are as good by an objective as its best the best by the other one."""
+    assert end.best is not None
+    measure = problem.objectives[objective]
+    best = end.best.measures[measure]
+    bound = problem.bound(measure, best + END * abs(best))
+    found = looked_for(problem, store, 1 - objective, bound)
+    return end if found.best is None else found
 
 
 def _undominated(results: Sequence[Found]) -> list[Found]:
@@ -122,10 +138,15 @@ def report(found: Found) -> list[str]:
         at = best.x[problem.numbers.index(key)]
         ends = problem.bounds[problem.numbers.index(key)]
         edge = ", at the end of its range" if np.isclose(at, ends).any() else ""
-        lines.append(
-            f"  {key} {plain(low, 4)} to {plain(high, 4)} costs at most 1 % of the objective{edge}"
-        )
+        lines.append(f"  {key} {_span(low, high)} costs at most 1 % of the objective{edge}")
     return lines
+
+
+def _span(low: float, high: float) -> str:
+    """Two numbers, with as many digits as tell them apart."""
+    apart = (d for d in range(4, GIVEN) if plain(low, d) != plain(high, d))
+    digits = next(apart, 4)
+    return f"{plain(low, digits)} to {plain(high, digits)}"
 
 
 def _why(found: Found) -> list[str]:
@@ -200,8 +221,8 @@ def table(results: Sequence[Found]) -> pd.DataFrame:
     """One row per requirement and objective, one column per muscle that was found."""
     problem = results[0].problem
     rows: list[dict[str, Any]] = [
-        {"name": r.name, "what": r.what, "limit": ("≥ " if r.sense > 0 else "≤ ") + f"{r.limit:g}",
-         "unit": r.unit}
+        {"name": r.name, "what": r.what, "unit": r.unit,
+         "limit": ("≥ " if r.sense > 0 else "≤ ") + plain(r.limit, GIVEN)}
         for r in problem.requirements
     ]  # fmt: skip
     rows += [{"name": "objective", "what": problem.text_of(m, 0.0).split(":")[0], "limit": "",

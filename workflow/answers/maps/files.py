@@ -1,12 +1,16 @@
 """A map as files: netCDF, CSV, .mat, its measured error, a figure."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+from numpy.typing import NDArray
 
 from geometry.files import atomic_write
 from geometry.readable import plain
@@ -17,6 +21,8 @@ from workflow.figures import style
 from workflow.figures.style import FULL, panels, percent
 
 LINES = 8  # pressures that are drawn at most
+ROOM = 0.13  # left of the curves, for their names, as a share of their width
+APART, WIDE = 8, 45  # height and width of a name [points]
 
 
 def write(found: Checked, output: Path) -> bool:
@@ -100,18 +106,38 @@ def draw(found: Checked) -> Figure:
     ax, made = axes[0, 0], found.map
     chosen = made.pressure[:: max(1, -(-made.pressure.size // LINES))]
     fine = np.linspace(made.contraction[0], made.contraction[-1], 200)
+    starts = []
     for number, pressure in enumerate(chosen):
         grey = str(0.7 * (1 - number / max(len(chosen) - 1, 1)))
         force = made(FORCE, pressure, fine)
         ax.plot(fine, force, color=grey, linewidth=1)
         known = np.flatnonzero(np.isfinite(force))
         if known.size:
-            ax.annotate(f"{pressure:g} MPa", (fine[known[0]], force[known[0]]), fontsize=7)
+            starts.append((fine[known[0]], force[known[0]], f"{pressure:g} MPa"))
     if found.states.size:
         ax.plot(found.states[:, 1], found.states[:, 3], "x", color="#d55e00", markersize=4)
     ax.axhline(0, color="black", linewidth=0.7)
     ax.set_xlabel("contraction [%]")
     ax.set_ylabel("force [N]")
-    ax.set_title(f"x: solved for alone, within {plain(found.error, 2)} N")
+    ax.set_title(f"x: states solved for alone, at most {plain(found.error, 2)} N off")
     percent(ax.xaxis, 0.05)
+    ax.set_xlim(made.contraction[0] - ROOM * np.ptp(made.contraction))
+    _name(ax, starts)
     return figure
+
+
+def _name(ax: Axes, starts: Sequence[tuple[float, float, str]]) -> None:
+    """Names left of where curves begin; of those that would lie on each other the last, highest."""
+    taken: list[NDArray[np.float64]] = []
+    for x, y, name in reversed(starts):
+        place = ax.transData.transform((x, y)) * 72 / ax.figure.dpi  # points
+        if all(abs(place[1] - y) > APART or abs(place[0] - x) > WIDE for x, y in taken):
+            taken.append(place)
+            look: dict[str, Any] = {
+                "fontsize": 7,
+                "ha": "right",
+                "va": "center",
+                "textcoords": "offset points",
+            }
+            halo = [withStroke(linewidth=2, foreground="white")]
+            ax.annotate(name, (x, y), (-3, 0), path_effects=halo, **look)
