@@ -11,6 +11,7 @@ from pydantic_core import ErrorDetails
 from geometry.refusal import Refusal
 from workflow.study import library, plain_yaml, units, user_file
 from workflow.study.errors import Findings, StudyError, choices, printable, shown
+from workflow.study.folders import DEFAULT
 from workflow.study.plain_yaml import Node, UnreadableText
 from workflow.study.schema import (
     INEXPRESSIBLE,
@@ -26,6 +27,10 @@ from workflow.study.schema import (
 
 T = TypeVar("T")
 Keys = tuple[str | int, ...]
+UNNAMED = (  # said where the study of this project is not there
+    "\n  allowed: a study that is named, snakemake --config study=FILE or muscle ... --study FILE; "
+    "without a name it is that of the checkout, in whose folder to run"
+)
 # Sections of entries by name
 NAMED = ("materials", "muscles", "variants", "scenes", "calibration", "design", "map", "pair")
 
@@ -53,7 +58,12 @@ class Source:
     @classmethod
     def read(cls, path: Path, also: Collection[str] = ()) -> "Source":
         """Parse a file; a duplicate key is an error. ``also``: muscles of the library."""
-        text = user_file.text_of(path)
+        try:
+            text = user_file.text_of(path)
+        except StudyError as error:
+            if path != DEFAULT or path.exists():
+                raise
+            raise StudyError(f"{error}{UNNAMED}") from None
         try:
             root = plain_yaml.read(text)
         except UnreadableText as error:

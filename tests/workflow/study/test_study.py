@@ -342,6 +342,14 @@ def test_an_unknown_map_is_refused_by_name(tmp_path):
     assert "martens2017" in message
 
 
+def test_without_a_study_it_says_how_to_name_one(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(StudyError, match=r"config\.yaml: cannot be read.*\n.*--config study=FILE"):
+        load("config/config.yaml")
+    with pytest.raises(StudyError, match=r"no such file\)$"):
+        load("other.yaml")
+
+
 GOOD = "pressure_MPa,contraction,force_N\n0.3,0,700\n0.3,0.1,400\n0.3,0.2,100\n"
 
 
