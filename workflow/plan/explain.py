@@ -261,8 +261,8 @@ def _guessed_effect(
     most = max(there, key=lambda each: each.high)
     where = "" if len(there) == len(guesses) else f", known on {len(there)} of them"
     return (
-        f"half of {most.count} like muscles {_share(most.median)}, {100 * COVERAGE:g} % at most "
-        f"{_share(most.high)}{where}"
+        f"median {_share(most.median)} of {most.count} like muscles, {100 * COVERAGE:g} % of them "
+        f"at most {_share(most.high)}{where}"
     )
 
 
@@ -288,9 +288,9 @@ def _effects(model: str, cases: Sequence[Case], scene: Scene) -> Iterator[str]:
         for name in carried
         if name not in on
     ]
-    yield f"  {model:10}on: {', '.join(on) or 'none'}"
+    yield f"  {model:16} on: {', '.join(on) or 'none'}"
     if off:
-        yield f"{'':11}off: {', '.join(off)}"
+        yield f"{'':18} off: {', '.join(off)}"
 
 
 def _cases(plan: Plan, name: str, places: dict[Place, str]) -> Iterator[str]:

@@ -138,7 +138,7 @@ def test_explain_says_what_effects_are_worth_on_this_muscle(folder):
     for effect in EFFECTS:
         said = [line for line in before.splitlines() if re.match(rf"    [> ] {effect} ", line)]
         assert len(said) == 3
-        known = [re.search(r"half of (\d+) like muscles", line) for line in said]
+        known = [re.search(r"of (\d+) like muscles", line) for line in said]
         assert all(known) if effect != "discrete_threads" else not any(known)
     loose = after.partition("\nloose: ")[2].partition("\n\n")[0]
     together = re.search(r"    +cap_geometry .*measured with compressibility (\S+) %", loose)
