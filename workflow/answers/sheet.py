@@ -20,7 +20,7 @@ from solver.record import Solution
 from workflow.answers.curve import Curve
 from workflow.answers.quick import Quick
 from workflow.answers.store import Store
-from workflow.data import bench, reference
+from workflow.data import bench, deformed, reference
 from workflow.plan import model_choice
 from workflow.plan.mesh_error import error
 from workflow.plan.sheet_stops import stops_to
@@ -276,10 +276,16 @@ def measured_points(found: reference.ForceMap, pressure: float) -> NDArray[np.fl
 
 
 def _outline(curve: Curve) -> tuple[NDArray[np.float64], float]:
-    """Distance from mid-length and outer diameter, from the last state with a deformed section."""
+    """Distance from mid-length and outer diameter, from the last state with a deformed shape."""
     outer = curve.case.muscle.outer_radius
     for number in sorted(curve.solution.fields, reverse=True):
-        corners = curve.solution.fields[number].get("corners")
+        fields = curve.solution.fields[number]
+        corners = fields.get("corners")
+        if "meridian" in fields:  # of a membrane, whose wall keeps its volume
+            (line,) = deformed.lines(curve.case, fields, [outer])
+            radius, place = line.places(line.nodes[line.nodes >= 0])
+            outline = np.column_stack([place, 2 * radius])
+            return outline, float(curve.solution.states["contraction"][number])
         if corners is None or corners.shape[1] != 4:
             continue
         at = float(curve.solution.states["contraction"][number])

@@ -7,16 +7,29 @@ from matplotlib.figure import Figure
 
 from workflow.answers.sheet import Sheet, measured_points
 from workflow.data import bench
-from workflow.figures.style import FULL, SERIES, labelled, legend, look_of, panels, percent
+from workflow.figures.style import (
+    COLUMN_WIDTH,
+    FULL,
+    SERIES,
+    labelled,
+    legend,
+    look_of,
+    panels,
+    percent,
+)
 from workflow.study.contents import Study
 
 FINE = 200  # points of a line
 
 
 def draw(study: Study, sheets: Sequence[Sheet]) -> Figure:
-    """One row: forces on the left, outlines on the right."""
-    figure, axes = panels(FULL, 3.4, 1, 2, gap=(0.7, 0.3), width_ratios=[3, 2])
-    force, outline = axes[0]
+    """One row: forces on the left, outlines on the right if a model has some."""
+    shaped = any(sheet.outline.size for sheet in sheets)
+    if shaped:
+        figure, axes = panels(FULL, 3.4, 1, 2, gap=(0.7, 0.3), width_ratios=[3, 2])
+    else:
+        figure, axes = panels(COLUMN_WIDTH, 3.4)
+    force = axes[0, 0]
     for number, sheet in enumerate(sheets):
         style = SERIES[number % len(SERIES)]
         color = style["color"]
@@ -35,14 +48,13 @@ def draw(study: Study, sheets: Sequence[Sheet]) -> Figure:
             force.plot([at], [sheet.load], marker="D", color=color, markersize=5)
         if sheet.outline.size:
             place, diameter = sheet.outline.T
-            outline.plot(place, diameter, color=color)
+            axes[0, 1].plot(place, diameter, color=color)
     force.axhline(0, color="black", linewidth=0.7)
     force.set_xlabel("contraction [%]")
     force.set_ylabel("force [N]")
     percent(force.xaxis, 0.05)
-    outline.set_xlabel("distance from mid-length [mm]")
-    outline.set_ylabel("outer diameter [mm]")
-    if not any(sheet.outline.size for sheet in sheets):
-        outline.set_title("no shape by these models")
+    if shaped:
+        axes[0, 1].set_xlabel("distance from mid-length [mm]")
+        axes[0, 1].set_ylabel("outer diameter [mm]")
     legend(figure, labelled(axes))
     return figure

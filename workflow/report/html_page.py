@@ -23,6 +23,8 @@ table { border-collapse: collapse; margin: 1em 0 }
 caption { text-align: left; font-weight: bold; padding: .4em 0 }
 th, td { border-bottom: 1px solid #ddd; padding: .3em .6em; text-align: left; vertical-align: top }
 th { position: sticky; top: 0; background: #fff }
+td, th { overflow-wrap: break-word }
+@media (max-width: 48rem) { table { display: block; overflow-x: auto } }
 td.number { text-align: right; white-space: nowrap }
 .reproduced { background: #dcefdc }
 .partly { background: #fdf3cf }

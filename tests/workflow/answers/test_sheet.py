@@ -10,7 +10,7 @@ import pytest
 
 from solver.load_path import LoadPath
 from workflow.__main__ import main
-from workflow.answers import sheet, sheet_files
+from workflow.answers import sheet, sheet_figure, sheet_files
 from workflow.answers.store import Store
 from workflow.plan.plan import read
 from workflow.plan.sheet_stops import stops_to
@@ -73,6 +73,19 @@ def test_the_sheet_of_the_muscle_of_the_paper(study):
     assert found.outline[0, 1] == pytest.approx(38.420, abs=5e-3)  # at the last stop, 21 %
     assert found.outline_at == 0.21
     assert found.outline[-1] == pytest.approx([150 * 0.79, 24], abs=1.5)  # the fitting
+
+
+def test_the_outline_of_a_membrane_is_that_of_its_outer_surface(study):
+    found = sheet.solved(study, "dmsp20", 0.3, model="membrane", load=200.0)
+    states = found.curve.solution.states
+    widest = states["outer_diameter"][np.isclose(states["contraction"], 0.21)]
+    assert found.outline_at == 0.21
+    assert found.outline[0] == pytest.approx([0, widest[0]], rel=1e-6)
+    assert found.outline[-1] == pytest.approx([150 * 0.79, 24], abs=1.5)  # the fitting
+    assert (np.diff(found.outline[:, 0]) > 0).all()
+    assert len(sheet_figure.draw(study, [found]).axes) == 2
+    cylinder = sheet.solved(study, "dmsp20", 0.3, model="cylinder", load=200.0)
+    assert len(sheet_figure.draw(study, [cylinder]).axes) == 1  # none of what is not there
 
 
 def test_stiffness_behind_a_closed_valve_is_that_of_states_with_the_same_air(study):
