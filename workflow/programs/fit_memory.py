@@ -68,7 +68,7 @@ def lines(found: "MemoryFit", model: str, material: str) -> Iterator[str]:
         f"left in the mean square: {plain(found.residual, 3)} N, "
         f"{100 * found.residual / span if span else 0:.2g} % of the range of the forces"
     )
-    shown = ", ".join(f"{name} {value:.4g}" for name, value in found.curve.items())
+    shown = ", ".join(f"{name} {plain(value, 4)}" for name, value in found.curve.items())
     yield f"taken off as elastic (N, by contraction and MPa): {shown}"
     for note in found.notes:
         yield f"warning: {note}"

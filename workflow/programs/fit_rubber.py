@@ -3,9 +3,11 @@
 import argparse
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from geometry.readable import plain
 from workflow.data import rubber_fit, rubber_tests
 from workflow.data.rubber_fit import Fit
 from workflow.data.rubber_tests import KINDS
@@ -47,25 +49,26 @@ def run(given: argparse.Namespace) -> int:
 
 def lines(found: Fit, law: str, name: str) -> Iterator[str]:
     """What was found, what speaks against it, and the material."""
-    yield f"{law}, least squares of nominal stress: sum of squares {found.squares:.6g} MPa2"
+    yield f"{law}, least squares of nominal stress: sum of squares {plain(found.squares, 6)} MPa2"
     for key, value in found.values.items():
-        numbers = value if isinstance(value, list) else [value]
-        shown = [each if isinstance(each, str) else f"{each:.6g}" for each in numbers]
+        numbers: list[Any] = value if isinstance(value, list) else [value]
+        shown = [each if isinstance(each, str) else plain(each, 6) for each in numbers]
         yield f"  {key} = {', '.join(shown)}"
     for test in found.tests:
         off = np.abs(found.residuals[test.kind])
+        mean, most = plain(np.sqrt(np.mean(off**2)), 3), plain(off.max(), 3)
+        share = f"{plain(100 * off.max() / np.max(np.abs(test.stress)), 2)} %"
         yield (
             f"  {test.kind}: {len(off)} points, stretch {test.stretch.min():.4g} to "
-            f"{test.stretch.max():.4g}; off by {np.sqrt(np.mean(off**2)):.3g} MPa in the mean "
-            f"square, {off.max():.3g} at most, {100 * off.max() / np.max(np.abs(test.stress)):.2g}"
-            " % of its largest stress"
+            f"{test.stretch.max():.4g}; off by {mean} MPa in the mean square, "
+            f"{most} at most, {share} of its largest stress"
         )
     yield from warnings(found)
     entry = rubber_fit.entry(found)
     if not entry:
         return
     assert found.material is not None
-    yield f"initial shear modulus {found.material.shear_modulus:.4g} MPa"
+    yield f"initial shear modulus {plain(found.material.shear_modulus, 4)} MPa"
     written = ", ".join(f"{key}: {value}" for key, value in entry.items())
     yield "to paste into a study file:"
     yield "materials:"

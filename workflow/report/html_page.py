@@ -13,6 +13,7 @@ from pathlib import Path
 import pandas as pd
 
 from geometry.files import atomic_write
+from geometry.readable import plain
 
 ANALYSES = Path(__file__).parents[1] / "analyses"
 DATA = ("workflow/analyses/*/readers.py", "workflow/analyses/*/__init__.py")
@@ -94,5 +95,6 @@ def table(rows: pd.DataFrame, title: str) -> str:
 
 def _cell(value: object) -> str:
     if isinstance(value, int | float):
-        return f'<td class="number">{"" if pd.isna(value) else f"{value:.5g}"}</td>'
+        shown = str(int(value)) if isinstance(value, int) else plain(value, 5)
+        return f'<td class="number">{"" if pd.isna(value) else shown}</td>'
     return f"<td>{html.escape(str(value))}</td>"

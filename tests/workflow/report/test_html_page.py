@@ -74,6 +74,13 @@ def test_other_tables_are_shown_whole(written):
     assert '<td class="number"></td>' in text
 
 
+def test_large_numbers_are_said_without_an_exponent():
+    rows = pd.DataFrame({"force": [123456.7, 2e-5], "count": [1234567, 1]})
+    text = html_page.table(rows, "large")
+    for shown in ("123460", "0.00002", "1234567"):
+        assert f'<td class="number">{shown}</td>' in text
+
+
 def test_every_number_of_ours_is_readable():
     row = {"discretisation": np.nan, "unit": "N"}
     assert readers.ours({"ours": -98.7654, **row}) == "-98.8 N"

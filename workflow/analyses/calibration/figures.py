@@ -26,7 +26,7 @@ CURVES = {  # values, whether the model of the fit: style
     },
 }
 LOOKS = {1: {"marker": "o", "zorder": 3}, 0: {"marker": "o", "zorder": 2}}  # fitted or not
-SHADES, LIGHTEST = colormaps["Greys"], 0.3  # by pressure, the lowest not white
+SHADES, LIGHTEST = colormaps["Greys"], 0.45  # by pressure, the lowest not white
 CORNER = {"ha": "right", "va": "top", "fontsize": 7.5}
 
 
@@ -87,7 +87,8 @@ def residuals(points: pd.DataFrame) -> Figure:
     axes[-1, 0].set_xlabel("contraction [%]")
     dot: dict[str, Any] = {"linestyle": "none", "marker": "o"}
     grey = [Line2D([], [], color="0.3", mfc=mfc, **dot, label=label)
-            for mfc, label in (("0.3", "fitted"), ("none", "not fitted"))]  # fmt: skip
+            for mfc, label in (("0.3", "fitted"), ("none", "not fitted"))
+            if label == "fitted" or (~points["fitted"].astype(bool)).any()]  # fmt: skip
     ends = [
         Line2D([], [], color=SHADES(at), **dot, label=f"{pressure:.4g} MPa")
         for at, pressure in ((LIGHTEST, low), (1.0, high))
