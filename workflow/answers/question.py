@@ -23,6 +23,7 @@ from workflow.answers.store import Store
 from workflow.answers.studies import with_muscle
 from workflow.data.strain import judged
 from workflow.plan import effect_states, like_muscles, model_choice
+from workflow.study import units
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import StudyError, choices
 from workflow.study.folders import DEFAULT
@@ -161,7 +162,10 @@ class _Question:
                 "third is the answer"
             )
         if not 0 <= known.get(PRESSURE, 0.0) <= HIGHEST:
-            raise StudyError(f"pressure {known[PRESSURE]:g} MPa\n  allowed: 0 to {HIGHEST:g} MPa")
+            guess = units.guess(PRESSURE, known[PRESSURE])
+            perhaps = f"\n  perhaps: {guess}" if guess else ""
+            allowed = f"0 to {HIGHEST:g} MPa{perhaps}"
+            raise StudyError(f"pressure {known[PRESSURE]:g} MPa\n  allowed: {allowed}")
         try:
             LoadPath(kind=PathKind.ISOBARIC, held=0.0, stops=(known.get(CONTRACTION, 0.0),))
         except Refusal:

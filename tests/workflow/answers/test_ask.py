@@ -142,6 +142,7 @@ def test_where_a_model_has_no_state_the_next_one_answers(ask):
         ({"pressure": 0.3, "contraction": 0.1, "force": 5.0}, "two of"),
         ({"muscle": "dmsp2", "pressure": 0.3, "contraction": 0.1}, "nearest: dmsp20"),
         ({"pressure": "-1bar", "contraction": "5%"}, "0 to 20 MPa"),
+        ({"pressure": "300MPa", "contraction": "5%"}, "perhaps: 300 kPa, that is 0.3 MPa"),
         ({"pressure": "1bar", "contraction": "80%"}, "contraction 80 %"),
         ({"pressure": "2.5bar", "contraction": "280mm"}, "at rest, where it is 300 mm long"),
         ({"contraction": "10%", "force": "-5N"}, "0 N or more"),
