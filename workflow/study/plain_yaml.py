@@ -82,7 +82,8 @@ def read(text: str) -> Node:
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else None
         problem = str(error.problem)
-        if line and "\t" in text.split("\n")[line - 1] and "cannot start any token" in problem:
+        here = text[error.problem_mark.index :] if error.problem_mark else ""
+        if here.startswith("\t") and "cannot start any token" in problem:
             problem = "a tab stands here, where YAML takes blanks only"
         raise UnreadableText([*reader.problems, (line, problem)]) from None
     except yaml.YAMLError as error:
