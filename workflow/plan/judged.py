@@ -18,14 +18,11 @@ from solver.load_path import ZERO_FORCE
 from solver.models import MODELS
 from solver.record import Solution
 from solver.status import Flag, StateStatus
+from workflow.study.judged_quantities import VARIABLES
 
 Array = NDArray[np.float64]
 FOLLOWS, ZERO = "follows", "zero_force"
-QUANTITIES = {  # of a scene, and the variables of the record
-    "inner_diameter": "inner_diameter_inflated",
-    "outer_diameter": "outer_diameter",
-    "volume": "volume",
-}
+QUANTITIES = VARIABLES
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 
 

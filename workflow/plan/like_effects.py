@@ -9,19 +9,18 @@ A law of groups with its spread, as of the errors of rungs (workflow/plan/like_m
 what half of like muscles have at most, and COVERAGE of them.
 """
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from math import exp, isfinite, nan
+from math import isfinite, nan
 from pathlib import Path
 
 import numpy as np
 
 from solver.case import Case
-from workflow.plan import likeness
+from workflow.plan import like_muscles, likeness
 from workflow.plan.judged import FOLLOWS
-from workflow.plan.like_muscles import COVERAGE, MOST, Law, curve_features, groups_of, is_like
+from workflow.plan.like_muscles import COVERAGE, Law, curve_features, groups_of, is_like
 
 FILE = Path(__file__).with_suffix(".csv")
 DATA = ("workflow/plan/like_effects.csv",)
@@ -48,9 +47,7 @@ def guess(case: Case, effect: str, quantities: Sequence[str] = (FOLLOWS,)) -> Gu
 
     None if no muscles are like it, or what the effect changes on such was not solved.
     """
-    found = [_guess(case, effect, quantity) for quantity in quantities]
-    known = [each for each in found if each is not None]
-    return max(known, key=lambda g: g.high) if known and len(known) == len(found) else None
+    return like_muscles.worst([_guess(case, effect, quantity) for quantity in quantities])
 
 
 def _guess(case: Case, effect: str, quantity: str) -> Guess | None:
@@ -60,15 +57,13 @@ def _guess(case: Case, effect: str, quantity: str) -> Guess | None:
     value, wider = law.at(curve_features(likeness.groups(case), kind)[None], kind)
     if np.isnan(value[0]):
         return None
-    median, high = (
-        exp(min(value[0] + wider[0] * law.quantile(share), MOST)) for share in (0.5, COVERAGE)
-    )
+    median, high = (law.most(value[0], wider[0], share) for share in (0.5, COVERAGE))
     return Guess(median, high, len(law.spread))
 
 
 def origin() -> str:
     """When and with which code the table was made."""
-    return FILE.read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
+    return like_muscles.origin(FILE)
 
 
 @cache
@@ -92,8 +87,4 @@ def _value(row: dict[str, str], quantity: str) -> float:
 @cache
 def _table() -> dict[str, list[dict[str, str]]]:
     """Rows by effect."""
-    found: dict[str, list[dict[str, str]]] = {}
-    with FILE.open(newline="", encoding="utf-8") as stream:
-        for row in csv.DictReader(line for line in stream if not line.startswith("#")):
-            found.setdefault(row["effect"], []).append(row)
-    return found
+    return like_muscles.read(FILE, "effect")

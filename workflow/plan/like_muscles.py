@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from functools import cache
 from math import ceil, cos, exp, inf, log, nan, radians, sin, sqrt
 from pathlib import Path
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +45,17 @@ LOGARITHMIC = ("pressure", "wall", "length", "strain", "lowest")
 PLAIN = ("angle", "furthest", "first", "load", "gap", "sleeve")
 OF_STATE = ("contraction", "at", "pull")
 Array = NDArray[np.float64]
+
+
+class Bounded(Protocol):
+    """A guess of what is at most so much."""
+
+    @property
+    def high(self) -> float:
+        """So much."""
+
+
+G = TypeVar("G", bound=Bounded)
 
 
 @dataclass(frozen=True)
@@ -123,6 +135,10 @@ class Law:
         known = np.where(np.isnan(leverage), nan, 1.0)
         return known * (x @ self.factors), self.widths[kind] * np.sqrt(1 + leverage)
 
+    def most(self, value: float, wider: float, share: float) -> float:
+        """What a share of muscles has at most, where ``at`` gives this value and width."""
+        return exp(min(value + wider * self.quantile(share), MOST))
+
     def quantile(self, share: float) -> float:
         """What a share of new muscles does not exceed, of the spread."""
         rank = ceil(share * (len(self.spread) + 1))
@@ -131,9 +147,14 @@ class Law:
 
 def guess(case: Case, rung: str, judged: Sequence[str] = (FOLLOWS,)) -> Guess | None:
     """Of a rung on a curve, of the worst of some quantities; None if no muscles are like it."""
-    found = [_guess(case, rung, quantity) for quantity in judged]
-    known = [each for each in found if each is not None]
-    return max(known, key=lambda g: g.high) if known and len(known) == len(found) else None
+    return worst([_guess(case, rung, quantity) for quantity in judged])
+
+
+def worst(guesses: Sequence[G | None]) -> G | None:
+    """The one of most, of some quantities; None if one of them is not known."""
+    known = [each for each in guesses if each is not None]
+    whole = known and len(known) == len(guesses)
+    return max(known, key=lambda each: each.high) if whole else None
 
 
 def _guess(case: Case, rung: str, quantity: str) -> Guess | None:
@@ -147,11 +168,11 @@ def _guess(case: Case, rung: str, quantity: str) -> Guess | None:
     value, wider = law.at(curve_features(likeness.groups(case), kind)[None], kind)
     if np.isnan(value[0]):
         return None
-    median = exp(min(value[0] + wider[0] * law.quantile(0.5), MOST))
+    median = law.most(value[0], wider[0], 0.5)
     near = _nearest(case, rung)
     return Guess(
         median=median,
-        high=exp(min(value[0] + wider[0] * law.quantile(COVERAGE), MOST)),
+        high=law.most(value[0], wider[0], COVERAGE),
         spread=tuple(
             float(f) for f in np.exp(np.minimum(wider[0] * (law.spread - law.quantile(0.5)), MOST))
         ),
@@ -202,9 +223,9 @@ def _is_raised(case: Case) -> bool:
     return not MODELS[case.model].fuller
 
 
-def origin() -> str:
-    """When and with which code the table was made."""
-    return CURVES.read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
+def origin(table: Path = CURVES) -> str:
+    """When and with which code a table was made."""
+    return table.read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
 
 
 def rungs() -> set[str]:
@@ -355,7 +376,7 @@ def groups_of(row: Mapping[str, str]) -> dict[str, float]:
 
 @cache
 def _curves() -> dict[str, list[dict[str, str]]]:
-    return _read(CURVES)
+    return read(CURVES, "rung")
 
 
 @cache
@@ -365,14 +386,15 @@ def _states() -> dict[str, list[dict[str, str]]]:
     known = {"path", *LOGARITHMIC, *PLAIN}
     groups = {curve: {n: row[n] for n in known} for curve, row in of_curve.items()}
     return {
-        rung: [groups[row["curve"]] | row for row in rows] for rung, rows in _read(STATES).items()
+        rung: [groups[row["curve"]] | row for row in rows]
+        for rung, rows in read(STATES, "rung").items()
     }
 
 
-def _read(path: Path) -> dict[str, list[dict[str, str]]]:
-    """Rows of a table by rung."""
+def read(path: Path, by: str) -> dict[str, list[dict[str, str]]]:
+    """Rows of a table by one of its columns."""
     found: dict[str, list[dict[str, str]]] = {}
     with path.open(newline="", encoding="utf-8") as stream:
         for row in csv.DictReader(line for line in stream if not line.startswith("#")):
-            found.setdefault(row["rung"], []).append(row)
+            found.setdefault(row[by], []).append(row)
     return found

@@ -23,6 +23,7 @@ from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import AlreadyRefused, Findings, StudyError, choices, shown
 from workflow.study.folders import DEFAULT
 from workflow.study.installation import Installation
+from workflow.study.judged_quantities import VARIABLES
 from workflow.study.limits import Limits
 from workflow.study.muscles import Muscles
 from workflow.study.schema import (
@@ -35,11 +36,6 @@ from workflow.study.schema import (
 )
 from workflow.study.source import Keys, Source
 
-JUDGED = {  # quantities that a tolerance is about, by what a figure calls them
-    "inner_diameter_inflated": "inner_diameter",
-    "outer_diameter": "outer_diameter",
-    "volume": "volume",
-}
 SETTINGS = ("study", "batches")  # of --config
 MOST_BATCHES = 10**6
 
@@ -157,8 +153,8 @@ def _with_shown(scene: Scene) -> Scene:
     """A scene whose models are to be chosen, for what its figure shows as well."""
     if scene.figure is None or scene.models is not None or scene.path is None or scene.in_time:
         return scene
-    shown = {JUDGED[name] for name in figure_needs.axes(scene) if name in JUDGED}
-    wanted = {*scene.quantities, *shown}
+    axes = figure_needs.axes(scene)
+    wanted = {*scene.quantities, *(name for name, shown in VARIABLES.items() if shown in axes)}
     return scene.model_copy(update={"quantities": tuple(q for q in QUANTITIES if q in wanted)})
 
 

@@ -14,7 +14,8 @@ from workflow.plan import effect_costs, judged, model_choice
 from workflow.plan.explain import lines
 from workflow.plan.plan import plan
 from workflow.study.errors import StudyError
-from workflow.study.study import JUDGED, load
+from workflow.study.judged_quantities import VARIABLES
+from workflow.study.study import load
 
 STUDY = Path(__file__).parents[3] / "config/config.yaml"
 LOOSE, TIGHT = 0.05, 0.001
@@ -262,4 +263,4 @@ def test_what_a_figure_shows_is_judged(tmp_path):
     assert asked[1].estimates == shown[1].estimates != neither[1].estimates
     named = ", models: [geometric], figure: {y: inner_diameter_inflated}"
     assert not load(with_scene(tmp_path, scene % named)).scenes["a"].quantities
-    assert {quantity: name for name, quantity in JUDGED.items()} == judged.QUANTITIES
+    assert judged.QUANTITIES is VARIABLES  # what is judged is what a figure is asked for
