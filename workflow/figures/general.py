@@ -147,7 +147,8 @@ def _label(column: str) -> str:
     name, _, unit = column.partition(" [")
     if name.endswith("_max"):
         name = f"largest {name.removesuffix('_max')}"
-    return name.replace("_", " ") + f" [{unit}" * bool(unit)
+    name = name.replace("_", " ")
+    return f"{name} [{unit}" if unit else name
 
 
 def _measured(data: Any, kind: PathKind) -> list[pd.DataFrame]:

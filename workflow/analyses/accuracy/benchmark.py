@@ -134,7 +134,7 @@ def slowness(cases: Iterable[AnalysisCase]) -> float:
     with TemporaryDirectory() as scratch:
         start = time.monotonic()
         Bench(Path(scratch)).cost(first)
-        return (time.monotonic() - start) / (2 * AROUND + 0.3)
+        return (time.monotonic() - start) / (AROUND + expected_seconds(first.case))
 
 
 def of_solid(study: Study, runs: int) -> dict[str, float]:
