@@ -3,9 +3,9 @@
 Judged is what follows from the controls (the force; under a load the contraction), and of what a
 scene asks for the diameters, the volume and the state of zero force. An error is the largest
 difference at any stop, as a share of the largest absolute value along the curve; that of the state
-of zero force is a share of its own value. A state that the better model has and the other has not,
-or has only turned inside out or held by the smoothing of the slack law, is a failure: its error is
-infinite.
+of zero force is a share of its own value (where the better model has none, nothing is off). A state
+that the better model has and the other has not, or has only turned inside out or held by the
+smoothing of the slack law, is a failure: its error is infinite.
 """
 
 from collections.abc import Iterable, Sequence
@@ -23,6 +23,7 @@ from workflow.study.judged_quantities import VARIABLES
 Array = NDArray[np.float64]
 FOLLOWS, ZERO = "follows", "zero_force"
 QUANTITIES = VARIABLES
+AT_ZERO = 1e-6  # of the largest control of a path: as good as none
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 
 
@@ -69,10 +70,11 @@ def difference(
         return float("inf")
     both = fine & good & here
     if not both.any():
-        return float("nan")
+        return 0.0 if quantity == ZERO else float("nan")
     off = np.abs(values[numbers] - exact)[both]
-    if quantity == ZERO:
-        return float(off[0] / np.abs(exact[both][0]))
+    if quantity == ZERO:  # that is at 0 where a muscle pulls as soon as it has any pressure
+        own = max(float(np.abs(exact[both][0])), AT_ZERO * max(map(abs, case.path.stops)))
+        return float(off[0] / own)
     return float(off.max() / scale(case, solution, quantity))
 
 

@@ -11,7 +11,7 @@ from solver.record import Solution, unreached
 from solver.status import CaseStatus, Flag, StateStatus
 from workflow.plan import promise as module
 from workflow.plan.effect_costs import MESHES
-from workflow.plan.judged import FOLLOWS, difference
+from workflow.plan.judged import FOLLOWS, ZERO, difference
 from workflow.plan.like_muscles import Guess
 from workflow.plan.promise import Promise, climb, telling
 
@@ -368,3 +368,34 @@ def test_the_difference_is_a_share_of_the_largest_value(rungs):
     assert off == pytest.approx(6 / 606, rel=1e-6)
     lost = difference(rungs["cylinder"], curves["cylinder"], curves["solid"], FOLLOWS)
     assert lost == inf
+
+
+def of_threshold(make_case, pressure, status=StateStatus.CONVERGED):
+    """A curve at constant length whose last state is that of zero force, at a pressure."""
+    path = LoadPath(kind="isometric", held=0.0, stops=(0.1, 0.2), zero_force=True)
+    states = unreached(3) | {"pressure": np.array([0.1, 0.2, pressure])}
+    states["force"] = np.array([50.0, 100.0, 0.0])
+    each = [StateStatus.CONVERGED, StateStatus.CONVERGED, status]
+    return make_case(model="solid", path=path), Solution(
+        status=CaseStatus.CONVERGED, reason="", states=states, state_status=each
+    )
+
+
+@pytest.mark.parametrize(
+    ("own", "better", "expected"),
+    [(0.11, 0.1, 0.1), (0.0, 0.0, 0.0), (1e-13, 0.0, 0.0), (0.01, 0.0, 5e4)],  # of 1e-6 of 0.2 MPa
+)
+def test_a_threshold_is_judged_by_itself_and_may_be_at_no_pressure(
+    make_case, own, better, expected
+):
+    """As of a muscle at its own length, which pulls as soon as it has any."""
+    case, found = of_threshold(make_case, own)
+    off = difference(case, found, of_threshold(make_case, better)[1], ZERO)
+    assert off == pytest.approx(expected, rel=1e-6, abs=1e-6)
+
+
+def test_a_threshold_that_the_better_rung_has_not_is_no_error_of_the_other(make_case):
+    none = StateStatus.INVALID_STATE
+    case, found = of_threshold(make_case, 0.1, none)
+    assert difference(case, found, of_threshold(make_case, 0.1, none)[1], ZERO) == 0
+    assert difference(case, found, of_threshold(make_case, 0.1)[1], ZERO) == inf
