@@ -45,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog=f"muscle {name}", description=program.__doc__)
     program.add_arguments(parser)
     try:
-        status = int(program.run(parser.parse_args(given[1:])))
+        status = int(program.run(parser.parse_intermixed_args(given[1:])))  # options anywhere
         sys.stdout.flush()
         return status
     except (StudyError, OSError) as error:

@@ -1,6 +1,7 @@
 """``muscle ask``: the third of pressure, contraction and force, kept as a record."""
 
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -172,6 +173,15 @@ def test_of_a_state_that_it_does_not_come_to_alone_it_is_said_what_it_does(ask, 
     assert said in " ".join(ask(**given, model="cylinder").notes)
 
 
+def test_of_no_pressure_there_is_no_error_to_guess_and_no_contraction_of_its_own(ask):
+    found = ask(pressure="0bar", contraction="5%", model="cylinder")
+    assert math.isnan(found.error)
+    said = " ".join(found.notes)
+    assert "its error" not in said
+    assert "alone" not in said
+    assert "it has to be pushed" in said
+
+
 @pytest.mark.parametrize("model", ["geometric", "geometric_layers"])
 def test_an_equation_without_a_slope_has_its_pressure(ask, model):
     first = ask(pressure="0.25MPa", contraction="12%", model=model)
@@ -190,6 +200,9 @@ def test_the_command_prints_text_and_json(folder, monkeypatch, capsys):
     found = json.loads(capsys.readouterr().out)
     assert found["force"] == {"value": pytest.approx(299.109, abs=1e-3), "unit": "N"}
     assert found["solves"] == 0
+    between = ["ask", "--json", "dmsp20", "--study", str(STUDY), "0.3MPa", "--model", "cylinder"]
+    assert main([*between, "10%"]) == 0  # options stand anywhere
+    assert json.loads(capsys.readouterr().out)["force"] == found["force"]
     assert main([*words, "--pressure", "1bar"]) == 1
     assert "there is a pressure already" in capsys.readouterr().err
 
