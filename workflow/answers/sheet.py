@@ -260,12 +260,17 @@ def _masses(studied: StudiedMuscle) -> dict[str, float | None]:
 def _measured(curve: Curve, studied: StudiedMuscle) -> Iterator[Row]:
     """How far the curve is from what was measured at its pressure."""
     for name, found in bench.of_muscle(studied).items():
-        points = measured_points(found, curve.pressure)
-        points = points[points[:, 0] <= curve.contraction[-1]]
+        measured = measured_points(found, curve.pressure)
+        points = measured[measured[:, 0] <= curve.contraction[-1]]
         if points.size:
             off = np.mean(curve.force(points[:, 0]) - points[:, 1]) / np.max(points[:, 1])
-            note = f"mean of {len(points)} measured points, share of the largest measured force"
-            yield Row(f"off {name}", 100 * float(off), "%", note)
+            note = f"mean of {_of(points, measured)} measured points, share of the largest force"
+            yield Row(f"deviation from {name}", 100 * float(off), "%", note)
+
+
+def _of(some: NDArray[np.float64], all_: NDArray[np.float64]) -> str:
+    """How many of how many: measured points behind the end of the curve are left out."""
+    return f"{len(some)} of {len(all_)}" if len(some) < len(all_) else f"{len(some)}"
 
 
 def measured_points(found: reference.ForceMap, pressure: float) -> NDArray[np.float64]:

@@ -208,7 +208,7 @@ def test_a_scene_asks_for_sheets(study, folder, capsys):
     page = output.read_text()
     assert "stiffness, valve closed" in page
     assert "data:image/png" in page
-    assert "off festo_musclesim" in page
+    assert "deviation from festo_musclesim" in page
     with pytest.raises(StudyError, match="nearest: mine"):
         sheet_files.of_scene(plan, "mini")
 
