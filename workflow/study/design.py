@@ -43,6 +43,7 @@ def check(study: Study, name: str) -> Iterator[StudyError]:
         pair = getattr(entry.free, key)
         if pair is not None and not 0 < pair[0] < pair[1]:
             yield source.refuse((*keys, "free", key), list(pair), "two rising numbers > 0")
+    yield from _wall(study, (*keys, "free", "wall_thickness"), entry)
     if len(entry.minimise) + len(entry.maximise) not in (1, 2):
         key = "minimise" if entry.minimise or not entry.maximise else "maximise"
         value = list(getattr(entry, key)) or None
@@ -55,6 +56,19 @@ def check(study: Study, name: str) -> Iterator[StudyError]:
         yield source.refuse((*keys, "contraction"), entry.contraction, allowed)
     for each, requirement in entry.require.items():
         yield from _requirement(study, (*keys, "require", each), entry, requirement)
+
+
+def _wall(study: Study, keys: Keys, entry: DesignEntry) -> Iterator[StudyError]:
+    """The layers keep their depth, so no wall may be as thin as that."""
+    walls = entry.free.wall_thickness
+    for name in entry.free.muscle or (entry.base,):
+        base = study.muscles[name].muscle if name in study.muscles else None
+        if walls is None or base is None or not isinstance(base.braid, Braid):
+            continue
+        depth = (base.braid.layer_diameters[1] - base.inner_diameter) / 2
+        if walls[0] <= depth < walls[1]:
+            allowed = f"from more than {depth:.6g} mm on, where the outer layer of {name} lies"
+            yield study.source.refuse(keys, list(walls), allowed)
 
 
 def _pressure(study: Study, keys: Keys, pressure: float) -> Iterator[StudyError]:

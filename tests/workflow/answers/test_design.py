@@ -12,7 +12,7 @@ from geometry.refusal import Refusal
 from solver import record
 from workflow.answers.design import result, search
 from workflow.answers.design.problem import Problem, cover
-from workflow.answers.design.search import MISSED, Found, Trial, looked_for
+from workflow.answers.design.search import MISSED, Found, Search, Trial, looked_for
 from workflow.answers.store import Store
 from workflow.plan.plan import read
 from workflow.study.errors import StudyError
@@ -265,12 +265,26 @@ def test_a_candidate_that_cannot_be_built_is_none(study):
         problem.muscle(np.array([-1.0]))
 
 
+def test_a_rounded_candidate_can_be_built_if_it_can(tmp_path):
+    path = tmp_path / "study.yaml"
+    path.write_text(SMALL.replace("inner_diameter: [8, 16]", "wall_thickness: [0.9001, 2]"))
+    problem = Problem(load(path), "small")
+    assert problem.rounded(np.array([1.23456])).tolist() == [1.235]
+    assert problem.rounded(np.array([0.9002])).tolist() == [0.9002]  # 0.9 has no outer layer
+
+
+def test_a_candidate_without_states_is_no_trial(study):
+    search = Search(Problem(study, "small"), Store(study))
+    assert search._tried(np.array([-1.0])) is None
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [
         (("base: base\n    pressure: 0.3", "base: bass\n    pressure: 0.3"), "nearest: base"),
         (("pressure: 0.3", "pressure: 300"), "at most 20 (MPa)"),
         (("inner_diameter: [8, 16]", "angle: [35, 15]"), "two rising numbers"),
+        (("inner_diameter: [8, 16]", "wall_thickness: [0.9, 2]"), "more than 0.9 mm on"),
         (("at_least: 150, ", ""), "exactly one of at_least, at_most"),
         (("at_least: 150", "at_least: 150, at_most: 5"), "exactly one of at_least, at_most"),
         (("150, contraction: 0.1", "150"), "must be given for force"),

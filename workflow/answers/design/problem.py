@@ -33,6 +33,7 @@ from workflow.study.schema import DesignEntry, RequirementEntry
 
 NUMBERS = ("inner_diameter", "wall_thickness", "length", "angle")
 DECIMALS = 3  # of lengths and angles of a muscle that is solved: what is pasted is what was solved
+MORE = 6
 MOST = 0.5  # contraction beyond which no free contraction is looked for
 TRUTH = "solid"
 LITRE = 1e6  # mm3
@@ -125,9 +126,13 @@ class Problem:
         return found
 
     def rounded(self, x: Array) -> Array:
-        """A candidate whose numbers have few decimals, as the muscle that is pasted."""
-        found = np.round(x, DECIMALS)
-        return np.where(self.integral, np.round(x), found)
+        """A candidate whose numbers have few decimals, as the muscle that is pasted.
+
+        More of them where the rounded one has no such states: it is at the end of what can be
+        built, as where the outer layer comes out of the wall.
+        """
+        found = [np.where(self.integral, np.round(x), np.round(x, d)) for d in (DECIMALS, MORE)]
+        return found[0] if self.cheap(found[0]) is not None else found[1]
 
     def muscle(self, x: Array) -> StudiedMuscle:
         """The muscle of a candidate; raises Refusal if it cannot be built."""

@@ -159,9 +159,10 @@ class Search:
 
     def _tried(self, x: Array) -> Trial | None:
         """A candidate by the solid, whose ratios are taken over; None where it has no states."""
-        problem, studied = self.problem, self.problem.muscle(x)
-        predicted = self.measures(x)
-        assert predicted is not None
+        problem, predicted = self.problem, self.measures(x)
+        if predicted is None:
+            return None
+        studied = problem.muscle(x)
         curves = {}
         for pressure in problem.contractions(studied):
             case = problem.case(studied, pressure)
