@@ -39,13 +39,15 @@ class Asked(Protocol):
 class SolvedCase:
     """A case with its record, and those of its stops that are wanted.
 
-    ``finer`` is the same on a mesh twice as fine, where a scene asks for errors that are measured.
+    ``finer`` is the same on a mesh twice as fine, where a scene asks for measured errors or
+    a climb has had it, ``coarser`` that on the next coarser mesh of the ladder, where a climb has.
     """
 
     case: Case
     solution: Solution
     stops: tuple[float, ...]
     finer: Solution | None = field(default=None, kw_only=True)
+    coarser: Solution | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ def curves_of_study(plan: Plan, folder: Path = FOLDER, *, partial: bool = False)
     """All curves of a study, with all their stops."""
     solved = read(plan, plan.cases, folder, partial=partial)
     return [
-        _curve(plan, place, key, solved, planned.case.path.stops)
+        _curve(plan, place, key, solved, planned.case.path.stops, folder)
         for key, planned in plan.cases.items()
         for place in planned.places
     ]
@@ -90,6 +92,7 @@ def curves_of_scene(
             key,
             solved,
             plan.cases[key].case.path.stops if asked.in_time else asked.swept,
+            folder,
         )
         for place, key in places.items()
     ]
@@ -101,13 +104,27 @@ def _curve(
     key: str,
     solved: Mapping[str, tuple[Case, Solution]],
     stops: tuple[float, ...],
+    folder: Path,
 ) -> Curve:
     """A curve, judged by what the materials of its muscle bear."""
     case, solution = solved[key]
     limits = plan.study.muscles[place.muscle].limits
+    by, coarser = plan.meshes_by.get(key, ("", ""))
     finer = solved.get(plan.finer.get(key, ""))
-    own = judged(case, solution, limits)
-    return Curve(case, own, stops, place, finer=finer[1] if finer else None)
+    return Curve(
+        case,
+        judged(case, solution, limits),
+        stops,
+        place,
+        finer=finer[1] if finer else _tried(by, solution, folder),
+        coarser=_tried(coarser, solution, folder),
+    )
+
+
+def _tried(key: str, own: Solution, folder: Path) -> Solution | None:
+    """What a climb has tried by the model that it took: no rule keeps it, or makes it again."""
+    there = found(key, folder) if key else None
+    return there[1] if there and there[1].code == own.code else None
 
 
 def read(

@@ -1,15 +1,19 @@
 """Plans in which climbs have ended: the record of the rung that each has come to fills its places.
 
 results/promises/<key>.json is written by the job of a climb (workflow/run/climbs.py); its keys are
-those of ``Outcome`` (workflow/plan/promise.py), and ``seconds``, of the processor by record.
+those of ``Outcome`` (workflow/plan/promise.py), ``seconds`` of the processor by record, and
+``whole``, the rungs of which the climb had all states: those on other meshes of the model that it
+took say how far that one's mesh is off.
 """
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 from workflow.plan.model_choice import RUNGS
 from workflow.plan.plan import WITHIN, Place, Plan, PlannedCase
+from workflow.plan.promise import Promise
 from workflow.study.folders import PROMISES
 
 
@@ -32,12 +36,16 @@ def settled(plan: Plan) -> Plan:
         for name, places in plan.scenes.items()
     }
     taken = {place for asked in cases.values() for place in asked.places}
+    meshes: dict[str, tuple[str, str]] = {}
     for key, end in found.items():
         asked = plan.cases[key]
         assert asked.promise is not None
         case = asked.promise.rungs[end["rung"]]
         moved = {place: _moved(place, end["rung"], taken) for place in asked.places}
         taken |= set(moved.values())
+        finer, coarser = _meshes_by(asked.promise, end)
+        known = meshes.get(case.key, ("", ""))
+        meshes[case.key] = finer or known[0], coarser or known[1]
         own = PlannedCase(case, tuple(sorted(moved.values())), asked.scenes)
         cases[case.key] = _joined(cases.get(case.key), own)
         for name in asked.scenes:
@@ -47,7 +55,18 @@ def settled(plan: Plan) -> Plan:
         plan,
         cases=dict(sorted(cases.items(), key=lambda entry: entry[1].places)),
         scenes={name: dict(sorted(places.items())) for name, places in scenes.items()},
+        meshes_by={key: by for key, by in sorted(meshes.items()) if any(by)},
     )
+
+
+def _meshes_by(promise: Promise, end: Mapping[str, Any]) -> tuple[str, str]:
+    """Keys of a curve on the next finer and coarser mesh of its model, of those that are known."""
+    model, whole = promise.rungs[end["rung"]].model, end.get("whole", ())
+    meshes = [name for name, case in promise.rungs.items() if case.model == model]
+    at = meshes.index(end["rung"])
+    beside = ["", *meshes, ""][at : at + 3 : 2]  # coarser, finer
+    coarser, finer = (promise.rungs[n].key if n in whole else "" for n in beside)
+    return finer, coarser
 
 
 def _moved(place: Place, rung: str, taken: set[Place]) -> Place:

@@ -201,10 +201,10 @@ def state_rows(curves: Sequence[SolvedCase]) -> pd.DataFrame:
             columns[control] = np.where(known, prescribed, columns[control])
     for name in WITH_ERROR:
         columns[f"{name}_error"] = joined(
-            mesh_error.error(curve.case, curve.solution, name, curve.finer) for curve in curves
+            mesh_error.error(of.case, of.solution, name, of.finer, of.coarser) for of in curves
         )
-    by = [mesh_error.known_by(curve.case, curve.solution, curve.finer) for curve in curves]
-    columns["error_by"] = np.repeat(np.array(by, object), counts)
+    by = (mesh_error.known_by(of.case, of.solution, of.finer, of.coarser) for of in curves)
+    columns["error_by"] = joined(by, object)
     columns["status"] = joined(
         ([s.value for s in found.state_status] for found in solutions), object
     )

@@ -35,16 +35,13 @@ def files(plan: Plan, folder: Path) -> list[Path]:
 def why_drawn(plan: Plan, scene: str, folder: Path) -> str:
     """Why a figure will be drawn; empty if it is there and made of what there is."""
     plan = settled(plan)
-    keys = sorted(set(plan.scenes.get(scene, {}).values()))
-    of = _made_of((plan.digest(scene), keys), keys)
-    return _why(_files(scene, folder), _figure_sources(plan, scene), of)
+    return _why(_files(scene, folder), _figure_sources(plan, scene), _figure_of(plan, scene))
 
 
 def figures(plan: Plan, scene: str, folder: Path) -> None:
     """Draw a figure, if there is a reason to."""
     if why_drawn(plan, scene, folder):
-        keys = sorted(set(plan.scenes.get(scene, {}).values()))
-        of = _made_of((plan.digest(scene), keys), keys)
+        of = _figure_of(plan, scene)
         from workflow.figures import figure  # and pandas, where something is drawn
 
         path = _files(scene, folder)[0]
@@ -77,6 +74,13 @@ def _figure_sources(plan: Plan, scene: str) -> tuple[str, ...]:
 
 def _field_sources() -> tuple[str, ...]:
     return tuple(sources.sources(paraview.__name__))
+
+
+def _figure_of(plan: Plan, scene: str) -> str:
+    """Digest of what a figure is made of, of a plan in which climbs are settled."""
+    keys = sorted(set(plan.scenes.get(scene, {}).values()))
+    more = sorted({other for key in keys for other in plan.meshes_by.get(key, ()) if other})
+    return _made_of((plan.digest(scene), keys), keys + more)
 
 
 def _made_of(asked: object, keys: list[str]) -> str:

@@ -3,6 +3,9 @@
 - Measured here: by the same curve on a mesh twice as fine, where a scene asks for that
   (``errors: measured``). Of second order the coarser mesh is off by 4/3 of the difference;
   1.5 times that is reported, as muscles that are pushed far converge more slowly.
+- Measured here by a coarser mesh: by what the climb of the curve has tried
+  (workflow/plan/promise.py), with its factors. Two meshes may cross where both are off, so at no
+  state less is said than a fifth of the most along the curve.
 - Estimated from like muscles (workflow/plan/like_muscles.py), on the meshes of the ladder.
 - Not known, otherwise. ``mesh_error.csv`` beside this module has what the analysis of accuracy has
   found on the curves of the paper: the largest errors on any of them, as shares of the largest
@@ -29,8 +32,9 @@ from solver.models import MODELS
 from solver.numerics import KINDS, Numerics
 from solver.record import Solution
 from workflow.plan.effect_costs import MESHES
-from workflow.plan.judged import FOLLOWS, QUANTITIES, scale
+from workflow.plan.judged import FOLLOWS, QUANTITIES, is_valid, scale
 from workflow.plan.like_muscles import mesh_errors
+from workflow.plan.promise import BY_COARSER
 
 FILE = Path(__file__).with_suffix(".csv")
 DATA = ("workflow/plan/mesh_error.csv",)
@@ -47,7 +51,9 @@ PAPER = {  # mm: sizes of the muscles of the paper, whose curves were measured
     "length": (300,),
 }
 OF_PAIR = 4 / 3 * 1.5  # error of a mesh by the difference of one twice as fine, and for safety
+LEAST_BY_COARSER = 0.2  # of the largest difference along the curve
 CONTROLS = ("contraction", "pressure")
+UNKNOWN = "not known"
 OF_VARIABLE = {variable: quantity for quantity, variable in QUANTITIES.items()}
 ERRORS = {"force": "force_error", "inner_diameter_inflated": "diameter_error"}
 
@@ -61,45 +67,81 @@ class OfPaper:
 
 
 def error(
-    case: Case, solution: Solution, variable: str, finer: Solution | None = None
+    case: Case,
+    solution: Solution,
+    variable: str,
+    finer: Solution | None = None,
+    coarser: Solution | None = None,
 ) -> NDArray[np.float64]:
     """Discretisation error of a variable at every state of a curve, in its unit.
 
     Of force, contraction, pressure, inner diameter and volume; of a control that is prescribed NaN.
     0 for models without a mesh; NaN where nothing is known. ``finer`` is the same curve on a mesh
-    twice as fine.
+    twice as fine, ``coarser`` on the next coarser one of the ladder.
     """
     values = solution.states[variable]
     if MODELS[case.model].mesh is None:
         return np.where(np.isfinite(values), 0.0, np.nan)
     if variable in CONTROLS and variable != case.path.kind.follows:
-        return _of_zero_force(case, solution, variable, finer)
+        return _of_zero_force(case, solution, variable, finer, coarser)
     if variable == "force" != case.path.kind.follows:  # under a load: by that of the contraction
         per_contraction = np.abs(solution.states["stiffness"]) * case.muscle.length
-        return np.asarray(error(case, solution, "contraction", finer) * per_contraction)
+        of_contraction = error(case, solution, "contraction", finer, coarser)
+        return np.asarray(of_contraction * per_contraction)
+    measured, _ = _measured(case, solution, variable, finer, coarser)
+    return np.where(np.isfinite(measured), measured, _estimated(case, solution, variable)[0])
+
+
+def known_by(
+    case: Case,
+    solution: Solution,
+    finer: Solution | None = None,
+    coarser: Solution | None = None,
+) -> list[str]:
+    """How the errors of every state of a curve are known."""
+    if MODELS[case.model].mesh is None:
+        return ["no mesh"] * case.path.states
+    follows = case.path.kind.follows
+    measured, how = _measured(case, solution, follows, finer, coarser)
+    estimated, otherwise = _estimated(case, solution, follows)
+    by = np.where(np.isfinite(measured), how, np.where(np.isfinite(estimated), otherwise, UNKNOWN))
+    return [str(each) for each in by]
+
+
+def _measured(
+    case: Case,
+    solution: Solution,
+    variable: str,
+    finer: Solution | None,
+    coarser: Solution | None,
+) -> tuple[NDArray[np.float64], str]:
+    """Errors by another mesh, NaN where one of the two has no state; and by which."""
+    mesh = rung_of(case).partition(", ")[2] or "default"
     if finer is not None:
-        return OF_PAIR * np.abs(values - finer.states[variable])
+        other, factor, least, how = finer, OF_PAIR, 0.0, "measured here"
+    elif coarser is not None and mesh in BY_COARSER:
+        other, factor, least = coarser, BY_COARSER[mesh], LEAST_BY_COARSER
+        how = "measured here by a coarser mesh"
+    else:
+        return np.full(case.path.states, np.nan), UNKNOWN
+    both = is_valid(solution) & is_valid(other)
+    off = np.where(both, np.abs(solution.states[variable] - other.states[variable]), np.nan)
+    most = np.nanmax(off[: len(case.path.stops)], initial=0.0)
+    return factor * np.maximum(off, least * most), how
+
+
+def _estimated(case: Case, solution: Solution, variable: str) -> tuple[NDArray[np.float64], str]:
+    """Errors by like muscles, else by those of the paper, NaN where nothing is known; by which."""
     quantity = OF_VARIABLE.get(variable, FOLLOWS)
     if rung := rung_of(case):
         share, count = mesh_errors(case, solution, rung, quantity)
         if count and np.isfinite(share).any():
-            return share * scale(case, solution, quantity)
+            by = f"estimated from {count} like muscles"
+            return share * scale(case, solution, quantity), by
     of_paper = _share(case, "force" if quantity == FOLLOWS else variable)
-    return np.where(np.isfinite(values), of_paper * scale(case, solution, quantity), np.nan)
-
-
-def known_by(case: Case, solution: Solution, finer: Solution | None = None) -> str:
-    """How the errors of a curve are known."""
-    if MODELS[case.model].mesh is None:
-        return "no mesh"
-    if finer is not None:
-        return "measured here"
-    if rung := rung_of(case):
-        share, count = mesh_errors(case, solution, rung, FOLLOWS)
-        if count and np.isfinite(share).any():
-            return f"estimated from {count} like muscles"
-    known = np.isfinite(_share(case, "force"))
-    return "estimated from the curves of the paper" if known else "not known"
+    here = np.isfinite(solution.states[variable])
+    errors = np.where(here, of_paper * scale(case, solution, quantity), np.nan)
+    return errors, "estimated from the curves of the paper"
 
 
 def rung_of(case: Case) -> str:
@@ -129,22 +171,27 @@ def twice_as_fine(case: Case) -> Case | None:
 
 
 def _of_zero_force(
-    case: Case, solution: Solution, variable: str, finer: Solution | None
+    case: Case,
+    solution: Solution,
+    variable: str,
+    finer: Solution | None,
+    coarser: Solution | None,
 ) -> NDArray[np.float64]:
     """Of the control that is swept, which is not prescribed where the force is zero."""
     found, stops = np.full(case.path.states, np.nan), len(case.path.stops)
     if variable != case.path.kind.swept.variable or not case.path.zero_force:
         return found
-    if finer is not None:
-        off = solution.states[variable][stops] - finer.states[variable][stops]
-        found[stops] = OF_PAIR * abs(off)
+    measured = _measured(case, solution, variable, finer, coarser)[0][stops]
+    if finer is not None and np.isfinite(measured):
+        found[stops] = measured
         return found
     states = solution.states
     slope = {
         "pressure": np.abs(states["force_by_pressure"]),
         "contraction": np.abs(states["stiffness"]) * case.muscle.length,
     }[variable]
-    found[stops] = (error(case, solution, case.path.kind.follows) / slope)[stops]
+    by_force = error(case, solution, case.path.kind.follows, None, coarser) / slope
+    found[stops] = np.fmax(by_force[stops], measured)
     return found
 
 

@@ -114,6 +114,8 @@ class Plan:
     scenes : of every scene that has cases, the key of the case at each of its places
     shown : specification of the whole muscles that scenes without cases show, by name
     finer : by case the one on a mesh twice as fine by which its errors are measured
+    meshes_by : by case that a climb has come to, the keys of its curve on the next finer and the
+        next coarser mesh of its model, where the climb has had them; else empty
     """
 
     study: Study
@@ -122,6 +124,7 @@ class Plan:
     scenes: dict[str, dict[Place, str]]
     shown: dict[str, str]
     finer: dict[str, str] = field(default_factory=dict)
+    meshes_by: dict[str, tuple[str, str]] = field(default_factory=dict)
 
     @property
     def promises(self) -> dict[str, Promise]:

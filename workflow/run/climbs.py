@@ -1,7 +1,8 @@
 """Climbs inside a batch: how each has ended, and whether that is still right.
 
-results/promises/<key>.json   ``Outcome`` (workflow/plan/promise.py), and ``seconds`` of the
-                              processor that each record took which it has asked for
+results/promises/<key>.json   ``Outcome`` (workflow/plan/promise.py), ``seconds`` of the
+                              processor that each record took which it has asked for, and
+                              ``whole``: rungs of which it had all states
 results/cost/<key>.json       what the climb itself took, with the status of the rung it came to
 
 It is done again where the sources of a rung, or what guesses are made of, have changed.
@@ -65,7 +66,14 @@ def climb(promise: Promise, solve: Solve, known: Known) -> int:
     start, used, path = time.monotonic(), time.process_time(), path_of(promise.key)
     damage.remove(path)
     asked: dict[str, str] = {}  # status by record
+    there: set[str] = set()
     solving = 0.0
+
+    def looked_at(case: Case) -> Solution | None:
+        found = known(case)
+        if found is not None:
+            there.add(case.key)
+        return found
 
     def counted(case: Case) -> Solution:
         nonlocal solving
@@ -76,7 +84,7 @@ def climb(promise: Promise, solve: Solve, known: Known) -> int:
         return found
 
     try:
-        end = plan_promise.climb(promise, counted, known)
+        end = plan_promise.climb(promise, counted, looked_at)
         case = promise.rungs[end.rung]
         status = asked.get(case.key) or counted(case).status.value
     except Unsolved:
@@ -84,6 +92,8 @@ def climb(promise: Promise, solve: Solve, known: Known) -> int:
     own = time.process_time() - used - solving
     found = end.as_dict() | {"record": case.key, "tolerance": promise.tolerance}
     found |= {"seconds": {key: seconds(key) for key in asked}, "own_seconds": own}
+    had = there | asked.keys()
+    found["whole"] = [name for name, each in promise.rungs.items() if each.key in had]
     with atomic_write(path) as beside:
         beside.write_text(json.dumps(found, sort_keys=True) + "\n")
     made.note(path, made.keep(_sources(promise)))

@@ -147,7 +147,8 @@ def test_a_muscle_of_latex_has_a_bar_of_its_own(make_case, muscle):
     found = mesh_error.error(case, converged(states), "force")
     assert found.max() >= 0.005 * 110
     assert np.argmax(found) == 10
-    assert mesh_error.known_by(case, converged(states)) == "estimated from 112 like muscles"
+    by = mesh_error.known_by(case, converged(states))
+    assert set(by) == {"estimated from 112 like muscles"}
 
 
 def test_nothing_is_guessed_where_threads_stretch_by_a_fifth(make_case):

@@ -11,6 +11,7 @@ from solver.effects import Effects
 from solver.load_path import LoadPath
 from solver.numerics import Numerics
 from solver.record import Solution, unreached
+from solver.status import StateStatus
 from workflow.analyses.accuracy.errors import pair_error, share
 from workflow.plan import mesh_error
 from workflow.plan.plan import plan
@@ -65,7 +66,7 @@ def test_every_curve_of_the_scenes_has_a_known_error_that_is_small(planned):
         error = mesh_error.error(case, states, name)[: len(case.path.stops)]
         assert np.isfinite(error).all(), f"{each.label}: {AGAIN}"
         assert np.nanmax(error) <= LARGEST * np.abs(states.states[name]).max(), each.label
-        assert mesh_error.known_by(case, states) != "not known", each.label
+        assert "not known" not in mesh_error.known_by(case, states), each.label
 
 
 def test_defaults_are_in_the_table(make_case):
@@ -100,10 +101,32 @@ def test_error_of_a_curve(make_case):
     measured = mesh_error.error(case, states, "force", finer)
     np.testing.assert_allclose(measured, [2, 4, np.nan])
     words = [mesh_error.known_by(case, states, other) for other in (None, finer)]
-    assert words == ["estimated from 112 like muscles", "measured here"]
+    like = "estimated from 112 like muscles"
+    assert words == [[like, like, "not known"], ["measured here"] * 2 + ["not known"]]
     none = make_case(model="cylinder", path=path)
     np.testing.assert_array_equal(mesh_error.error(none, states, "force"), [0, 0, np.nan])
-    assert mesh_error.known_by(none, states) == "no mesh"
+    assert mesh_error.known_by(none, states) == ["no mesh"] * 3
+
+
+def test_what_a_climb_has_tried_says_how_far_a_mesh_is_off(make_case, muscle):
+    """Also of a muscle that no others are like; where a mesh has lost a state that is no number."""
+    path = LoadPath(kind="isobaric", held=0.3, stops=(0.0, 0.1, 0.2))
+    case = make_case(model="solid", path=path, muscle=replace(muscle, length=3000))
+    states, coarser = on_path(case, [800.0, 400.0, 90.0]), on_path(case, [790.0, 400.1, 90.0])
+    by = "measured here by a coarser mesh"
+    found = mesh_error.error(case, states, "force", None, coarser)
+    np.testing.assert_allclose(found, [15, 3, 3])  # 1.5 times, at least a fifth of the most
+    assert mesh_error.known_by(case, states, None, coarser) == [by] * 3
+    lost = replace(coarser, state_status=[*coarser.state_status[:2], StateStatus.INVALID_STATE])
+    found = mesh_error.error(case, states, "force", None, lost)
+    np.testing.assert_allclose(found, [15, 3, np.nan])
+    assert mesh_error.known_by(case, states, None, lost) == [by, by, "not known"]
+    finer = on_path(case, [801.0, 400.0, 90.0])  # says more than a coarser one
+    np.testing.assert_allclose(mesh_error.error(case, states, "force", finer, lost)[0], 2)
+    numerics = replace(case.numerics, section=replace(case.numerics.section, refinement=2))
+    fine = replace(case, numerics=numerics)  # of second order off by a third of the difference
+    found = mesh_error.error(fine, states, "force", None, coarser)
+    np.testing.assert_allclose(found, [5, 1, 1])
 
 
 def test_error_of_what_is_looked_for_where_the_force_is_zero(make_case):
@@ -117,6 +140,8 @@ def test_error_of_what_is_looked_for_where_the_force_is_zero(make_case):
     finer = on_path(case, [200.0, 400.0, 0.0])
     finer.states["pressure"][2] -= 0.001
     assert mesh_error.error(case, states, "pressure", finer)[2] == pytest.approx(0.002)
+    by_coarser = mesh_error.error(case, states, "pressure", None, finer)[2]
+    assert by_coarser == pytest.approx(0.0015)
 
 
 def test_the_share_of_the_paper_s_muscle_is_no_other_one_s(make_case, muscle):

@@ -116,6 +116,28 @@ def test_errors_that_are_measured_say_so(folder):
     assert (measured["volume_error"] > 0).all()
 
 
+def test_what_a_climb_has_tried_is_the_error_bar_of_its_curve(folder):
+    """Without the record, which no rule keeps, it is estimated again."""
+    text = STUDY.replace("[0.3]", "[0.05]").replace("tolerance: 0.004", "tolerance: 0.0004")
+    Path("low.yaml").write_text(text)  # a pressure that no muscles of the table have
+    found = plan(load("low.yaml"))
+    assert batches.solve(found.cases, 2, LIMITS, Path("low.txt")) == 0
+
+    def tight():
+        curves = records.curves_of_scene(settled.settled(found), "tight")
+        return dataset.build(curves, found.study.muscles)["states"].to_dataset().to_dataframe()
+
+    end = settled.outcome(found.scenes["tight"][next(iter(found.scenes["tight"]))])
+    assert {end["rung"], "solid, coarser"} < set(end["whole"])
+    meshes = settled.settled(found).meshes_by[end["record"]]
+    assert any(meshes)
+    assert set(tight()["error_by"]) == {"measured here by a coarser mesh"}
+    assert (tight()["force_error"] > 0).all()
+    for key in filter(None, meshes):
+        records.path_of(key).unlink()
+    assert set(tight()["error_by"]) == {"estimated from the curves of the paper"}
+
+
 def test_explain_says_what_was_guessed_and_what_was_measured(folder):
     before = "\n".join(lines(planned()))
     assert "95 % of" in before

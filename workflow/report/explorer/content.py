@@ -248,7 +248,7 @@ def _curves(table: Table) -> list[dict[str, Any]]:
     """Every curve with its rows in the states, ``first`` to ``first + count``."""
     count = table.states.groupby("curve").size()
     first = table.states.reset_index(drop=True).reset_index().groupby("curve")["index"].min()
-    by = table.states.groupby("curve")["error_by"].first()
+    by = table.states.groupby("curve")["error_by"].agg(lambda known: "; ".join(known.unique()))
     names = ("muscle", "model", "variant", "path", "held", "case", "case_status", "case_reason")
     return [
         {name: _plain(row[name]) for name in names}
