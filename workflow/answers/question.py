@@ -33,7 +33,6 @@ from workflow.study.schema import Scene
 MODEL = "membrane"  # where neither a model nor a tolerance is asked for
 ROUNDS, NEAR = 10, 5e-7  # solves for a pressure, and its last change [MPa]
 TRIED = (0.1, 0.2, 0.4, 0.7, 1.0, 2.0, 4.0)  # MPa, in search of the largest contraction
-SOME = 1e-4  # a contraction that is worth a word
 DIGITS = 10  # of a contraction or pressure that is computed, not written
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 GUESS = "its error is a guess: models have not been compared on a muscle like this one"
@@ -388,7 +387,7 @@ class _Question:
         if found[FORCE] < 0:
             said = "it does not come here by itself: it has to be pushed"
             free = self.quick.contraction(pressure, 0.0)
-            if SOME < free < contraction:
+            if pressure > 0 and 0 < free < contraction:
                 said += (
                     f"; at {pressure:g} MPa it gets shorter by about {plain(100 * free, 2)} % alone"
                 )
