@@ -111,6 +111,12 @@ class Cluster:
         """Numbers of the jobs in a state."""
         return self.run("squeue", "-h", "-o", "%i", "-t", state).split()
 
+    def job_of_batch(self, number: int) -> str:
+        """The number of the job that runs for a batch of the study."""
+        running = self.run("squeue", "-h", "-o", "%i %k", "-t", "RUNNING").splitlines()
+        job_of = dict(reversed(line.split()) for line in running)
+        return job_of[f"rule_solve_wildcards_study_{number}"]
+
     def nodes_of_jobs(self) -> set[str]:
         """Nodes on which jobs of the last minutes have run."""
         return set(re.findall(r"\bNodeList=(\w+)", self.run("scontrol", "show", "jobs")))

@@ -80,6 +80,12 @@ def cases_of_batch(wildcards):
     return batches.of_batch(cases_asked(wildcards.asked), int(wildcards.batch), BATCHES)
 
 
+def cores_of_batch(_):
+    """All that there are; in a job of a cluster those that it was given of its node's."""
+    given = os.environ.get("SLURM_CPUS_PER_TASK") if workflow.remote_exec else None
+    return int(given or workflow.cores or 1)
+
+
 def solved(asked):
     """What tells that cases are solved: a file for each of their batches."""
     numbers = batches.numbers(cases_asked(asked), BATCHES)

@@ -13,6 +13,7 @@ from solver import freefem
 from workflow.run import damage, lock
 from workflow.run.progress import Progress, is_no_chatter
 
+LOCK = Path(".snakemake/run.lock")
 PROGRESS = []  # of the run that goes on
 
 
@@ -130,7 +131,7 @@ signal.signal(signal.SIGINT, interrupted)
 
 
 onstart:
-    lock.take(Path(".snakemake/run.lock"))
+    lock.take(LOCK, cluster=not workflow.local_exec)
     folders.take(STUDY)
     clear_damage()
     lock.tidy(Path("results"))
@@ -141,8 +142,10 @@ onstart:
 
 
 onsuccess:
+    lock.ended(LOCK)
     PROGRESS.pop().close(where_results_are())
 
 
 onerror:
+    lock.ended(LOCK)
     PROGRESS.pop().close()

@@ -23,7 +23,7 @@ rule solve:
     log:
         f"{RESULTS}/logs/solved/{{asked}}_{{batch}}of{BATCHES}.log",
     priority: 1
-    threads: lambda _: workflow.cores or 1
+    threads: cores_of_batch
     resources:
         wall_time=PLAN.study.wall_time,
         memory=PLAN.study.memory,

@@ -4,7 +4,6 @@ import errno
 import fcntl
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -20,11 +19,12 @@ ANSWER = 10.0  # s, for a cluster's programs
 _held: list[TextIO] = []  # open files: a lock lives as long as its file is open in a living process
 
 
-def take(path: Path) -> None:
+def take(path: Path, *, cluster: bool = False) -> None:
     """Lock a file until this process ends, however it ends, and end what a killed run left.
 
     The kernel drops the lock with the process, so nothing stale can be left (Snakemake's own
-    locks are files that outlive a kill; the profile turns them off).
+    locks are files that outlive a kill; the profile turns them off). A run on a ``cluster`` leaves
+    a file beside it until ``ended``, by which the next one knows that jobs may live.
 
     Raises
     ------
@@ -49,7 +49,20 @@ def take(path: Path) -> None:
     _held.append(file)
     os.environ[MARK] = str(path.resolve())
     _end_orphans(os.environ[MARK])
-    _cancel_orphans()
+    jobs = _jobs(path)
+    if jobs.exists() and _cancel_orphans():
+        jobs.unlink()
+    if cluster:
+        jobs.touch()
+
+
+def ended(path: Path) -> None:
+    """The run that has locked this file has no jobs any more, here or on a cluster."""
+    _jobs(path).unlink(missing_ok=True)
+
+
+def _jobs(path: Path) -> Path:
+    return path.with_suffix(".cluster")
 
 
 def wait(file: int) -> None:
@@ -84,20 +97,28 @@ def _end_orphans(lock: str) -> None:
             continue  # ended, or somebody else's
 
 
-def _cancel_orphans() -> None:
-    """End jobs of a cluster that outlived the run which began them in this folder."""
-    if shutil.which("squeue") is None or shutil.which("scancel") is None:
-        return
+def _cancel_orphans() -> bool:
+    """End jobs of a cluster that outlived the run which began them in this folder.
+
+    False, and a warning, where the cluster cannot be asked.
+    """
     asked = ["squeue", "--me", "--noheader", "--format=%i|%j|%Z"]
     try:
-        said = subprocess.run(asked, capture_output=True, text=True, timeout=ANSWER, check=True)
-        jobs = [line.split("|", 2) for line in said.stdout.splitlines() if line.count("|") > 1]
+        answer = subprocess.run(asked, capture_output=True, text=True, timeout=ANSWER, check=True)
+        jobs = [line.split("|", 2) for line in answer.stdout.splitlines() if line.count("|") > 1]
         here = [job for job, name, folder in jobs if name.startswith(PREFIX) and _is_here(folder)]
         if here:
             print(f"Cancelling {len(here)} jobs of a run that was killed", file=sys.stderr)
             subprocess.run(["scancel", *here], timeout=ANSWER, check=True, capture_output=True)
     except (OSError, subprocess.SubprocessError) as error:
-        print(f"warning: jobs of a killed run cannot be looked for ({error})", file=sys.stderr)
+        said = error.stderr if isinstance(error, subprocess.CalledProcessError) else ""
+        print(
+            "warning: the last run in this folder used a cluster and was killed; its jobs "
+            f"cannot be looked for ({said.strip() or error}): if some go on, end them with scancel",
+            file=sys.stderr,
+        )
+        return False
+    return True
 
 
 def _is_here(folder: str) -> bool:

@@ -6,6 +6,7 @@ stay in Snakemake's log (.snakemake/log). Warnings and errors are shown as ever.
 
 import json
 import logging
+import re
 import threading
 import time
 from collections.abc import Iterable, Iterator, Mapping
@@ -22,6 +23,13 @@ from workflow.study.folders import COST
 INTERVAL = 5.0  # s between two lines, if something happened
 SILENCE = 60.0  # s after which there is a line even if nothing did
 CHATTER = {LogEvent.JOB_INFO, LogEvent.JOB_STARTED, LogEvent.JOB_FINISHED, LogEvent.PROGRESS}
+ON_CLUSTER = re.compile(r"SLURM-job '(\w+)' failed.* SLURM status is: '(\w+)'", re.DOTALL)
+WHY_ENDED = {  # a job of a cluster, by its state there
+    "CANCELLED": "was cancelled",
+    "NODE_FAIL": "was lost with its node",
+    "OUT_OF_MEMORY": "needed more memory than it had; --set-resources solve:mem_mb=MB gives more",
+    "TIMEOUT": "ended at its time limit; --set-resources solve:runtime=MINUTES gives more",
+}
 PLAIN_CHATTER = ("Select jobs", "Touching output")  # messages that are no events
 
 
@@ -88,6 +96,8 @@ class Progress(logging.Handler):
             self.running.pop(job, None)
             if job in self.batches:
                 self._read(self.batches.pop(job))
+            if why := _why_ended(getattr(record, "rule_msg", None) or ""):
+                self._say(why)
         else:
             return
         self.changed = True
@@ -207,6 +217,15 @@ class _Batch:
             parts = line.split(" ", 3)
             if len(parts) == 4:
                 yield parts[1], parts[2], parts[3].rpartition("; ")[0] or parts[3]
+
+
+def _why_ended(said: str) -> str:
+    """How a job of a cluster has ended before its time, by what the executor says; else empty."""
+    found = ON_CLUSTER.search(said)
+    if not found or found[2] not in WHY_ENDED:
+        return ""
+    why = f"job {found[1]} of the cluster {WHY_ENDED[found[2]]} ({found[2]})"
+    return f"{why}. What it has solved stays; the next run solves the rest."
 
 
 def _is_failure(status: str) -> bool:

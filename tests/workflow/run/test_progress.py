@@ -98,6 +98,32 @@ def test_a_failed_case_is_named_at_once(follow, batch, tmp_path):
     assert "3 of 4 cases solved, 2 failed" in run.line()  # c will be tried again
 
 
+@pytest.mark.parametrize(
+    ("state", "what"),
+    [
+        ("TIMEOUT", "ended at its time limit; --set-resources solve:runtime=MINUTES gives more"),
+        ("OUT_OF_MEMORY", "needed more memory than it had"),
+        ("CANCELLED", "was cancelled"),
+    ],
+)
+def test_how_a_job_of_a_cluster_ended_is_a_sentence(follow, batch, state, what):
+    run = follow("a")
+    run.emit(batch.begin(1))
+    said = f"SLURM-job '12' failed, SLURM status is: '{state}'. Reason: Unknown."
+    run.emit(message(LogEvent.JOB_ERROR, jobid=1, rule_msg=said))
+    (line,) = run.terminal.getvalue().splitlines()
+    assert f"job 12 of the cluster {what}" in line
+    assert f"({state}). What it has solved stays; the next run solves the rest." in line
+
+
+def test_what_a_job_said_of_itself_is_not_said_again(follow, batch):
+    run = follow("a")
+    run.emit(batch.begin(1))
+    run.emit(message(LogEvent.JOB_ERROR, jobid=1, rule_msg="SLURM status is: 'FAILED'."))
+    run.emit(message(LogEvent.JOB_ERROR, jobid=1, rule_msg=None))
+    assert run.terminal.getvalue() == ""
+
+
 def test_half_a_line_is_read_when_it_is_whole(follow, batch):
     run = follow("a", "c")
     run.emit(batch.begin(1))
