@@ -48,6 +48,8 @@ def check(study: Study, name: str) -> Iterator[StudyError]:
         key = "minimise" if entry.minimise or not entry.maximise else "maximise"
         value = list(getattr(entry, key)) or None
         yield source.refuse((*keys, key), value, "one objective, or two for a trade-off")
+    if "mass" in entry.minimise:
+        yield from _density(study, (*keys, "minimise"), entry)
     if not entry.require:
         yield source.refuse((*keys, "require"), {}, "at least one requirement")
     yield from _pressure(study, (*keys, "pressure"), entry.pressure)
@@ -69,6 +71,15 @@ def _wall(study: Study, keys: Keys, entry: DesignEntry) -> Iterator[StudyError]:
         if walls[0] <= depth < walls[1]:
             allowed = f"from more than {depth:.6g} mm on, where the outer layer of {name} lies"
             yield study.source.refuse(keys, list(walls), allowed)
+
+
+def _density(study: Study, keys: Keys, entry: DesignEntry) -> Iterator[StudyError]:
+    """A mass is that of the wall at least, whose density must be known."""
+    for name in entry.free.muscle or (entry.base,):
+        made = study.muscles.get(name)
+        if made is not None and made.installation.density is None:
+            allowed = f"another objective: {made.material} of {name} has no density"
+            yield study.source.refuse(keys, "mass", allowed)
 
 
 def _pressure(study: Study, keys: Keys, pressure: float) -> Iterator[StudyError]:

@@ -292,6 +292,7 @@ def test_a_candidate_without_states_is_no_trial(study):
         (("at_most: 2}", "at_most: 2, load: 5}"), "not used for bore_stretch"),
         (("minimise: air", "reserve: 0.1"), "one objective"),
         (("minimise: air", "minimise: [air, mass, length]"), "one objective, or two"),
+        (("minimise: air", "minimise: mass"), "silicone of base has no density"),
         (("{inner_diameter: [8", "{material: [rubber], inner_diameter: [8"), "nbr, silicone"),
         (("thread_strength: 50, ", ""), None),
     ],

@@ -27,7 +27,6 @@ from workflow.answers.sheet import mass_of
 from workflow.plan.sheet_stops import stops_to
 from workflow.study import fit
 from workflow.study.contents import StudiedMuscle, Study
-from workflow.study.errors import StudyError
 from workflow.study.muscles import CAP_PER_WALL
 from workflow.study.schema import DesignEntry, RequirementEntry
 
@@ -378,13 +377,3 @@ def cover(studied: StudiedMuscle) -> float:
     wide = studied.installation.thread_diameter or fit.diameter(thread.stiffness, THREAD_MODULUS)
     room = math.pi * min(braid.layer_diameters) * math.cos(braid.angle)
     return braid.threads * wide / room
-
-
-def refuse_unknown_mass(problem: Problem) -> None:
-    """Raise StudyError where mass is an objective and no density is given."""
-    if "mass" in problem.objectives:
-        base = problem.study.muscles[problem.entry.base]
-        if base.installation.density is None:
-            raise StudyError(
-                f"design.{problem.name}.minimise: mass needs a density of {base.material}"
-            )
