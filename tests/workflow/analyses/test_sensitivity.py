@@ -111,9 +111,13 @@ def solution(asked):
     return converged(states)
 
 
-def test_the_seed_fixes_the_samples(normal, few):
-    first, again = (list(tables._global("x", normal, {"c10": 0.1})) for _ in range(2))
+def test_the_seed_fixes_the_samples(normal, few, monkeypatch):
+    monkeypatch.setattr(tables, "_by_cylinder", power_law)
+    ranges = {"c10": 0.1, "c01": 0.1}  # every output changes with one of them
+    first, again = (list(tables._global("x", normal, ranges)) for _ in range(2))
     assert first == again
+    monkeypatch.setattr(tables, "SEED", tables.SEED + 1)
+    assert list(tables._global("x", normal, ranges)) != first
 
 
 def test_the_figure_has_a_row_per_analysis():
