@@ -43,7 +43,7 @@ from solver.rubber.rubber_law import RubberLaw
 INCOMPRESSIBLE = {"kappa": 1e300}
 ANY_THREAD = {"stiffness": 1}
 MOST_FREQUENCIES = 1000
-DYNAMIC = "dynamic_stiffness"  # the quantity of models that answer vibrations
+DYNAMIC = "dynamic_stiffness"  # of models that answer vibrations: quantity, and name of a field
 ANY_MUSCLE = {"wall_thickness": 1e9, "length": 1.0}
 
 
@@ -81,15 +81,30 @@ class Case:
         object.__setattr__(self, "numerics", self.numerics.of(self.muscle))
         if self.model not in MODELS:
             raise UnsolvableCase("model", self.model, ", ".join(MODELS))
-        if self.muscle.braid is not None and self.thread is None:
-            raise UnsolvableCase("thread", None, "a thread, as the muscle has a braid")
-        if self.muscle.braid is None and MODELS[self.model].needs_braid:
-            raise UnsolvableCase("model", self.model, "another model: Eq. (1) needs a braid")
-        if self.muscle.braid is not None:
-            instead = BRAIDS[MODELS[self.model].braids](self.muscle.braid)
-            if instead:
-                raise UnsolvableCase("model", self.model, instead)
+        self._check_braid()
         check_carried(self.model, self.effects)
+        self._check_law()
+        _check_sleeves(self.muscle, self.effects)
+        if self.muscle.braid is None and self.effects.rubber is Rubber.NONE:
+            raise UnsolvableCase("rubber", self.effects.rubber, "elastic in a bare tube")
+        self._check_fields()
+        if self.path.history is not None:
+            self._check_history()
+        if self.frequencies != ():
+            self._check_frequencies()
+
+    def _check_braid(self) -> None:
+        """Refuse a braid without a thread, and one that the model has not."""
+        model, braid = MODELS[self.model], self.muscle.braid
+        if braid is not None and self.thread is None:
+            raise UnsolvableCase("thread", None, "a thread, as the muscle has a braid")
+        if braid is None and model.needs_braid:
+            raise UnsolvableCase("model", self.model, "another model: Eq. (1) needs a braid")
+        if braid is not None and (instead := BRAIDS[model.braids](braid)):
+            raise UnsolvableCase("model", self.model, instead)
+
+    def _check_law(self) -> None:
+        """Refuse a law of rubber that the model cannot take."""
         frame, law = MODELS[self.model].frame, self.rubber
         if frame and not law.has_frame(frame):
             able = [m.name for m in MODELS.values() if m.frame != frame and "rubber" in m.parts]
@@ -98,9 +113,9 @@ class Case:
                 f"the rubber, {law.law()}, needs principal stretches"
             )
             raise UnsolvableCase("model", self.model, allowed)
-        _check_sleeves(self.muscle, self.effects)
-        if self.muscle.braid is None and self.effects.rubber is Rubber.NONE:
-            raise UnsolvableCase("rubber", self.effects.rubber, "elastic in a bare tube")
+
+    def _check_fields(self) -> None:
+        """Refuse fields at what is no stop, or of a model that has none."""
         if not isinstance(self.fields_at, tuple):
             raise UnsolvableCase("fields_at", self.fields_at, "a list of stops of the path")
         for stop in self.fields_at:
@@ -108,10 +123,6 @@ class Case:
                 raise UnsolvableCase("fields_at", stop, f"stops of the path, {self.path.stops}")
         if self.fields_at and not MODELS[self.model].fields:
             raise UnsolvableCase("fields_at", self.fields_at, f"none: {self.model} has no fields")
-        if self.path.history is not None:
-            self._check_history()
-        if self.frequencies != ():
-            self._check_frequencies()
 
     def _check_history(self) -> None:
         """Refuse what no model can have in time, or this one cannot."""
@@ -177,6 +188,11 @@ class Case:
         return self.friction is not None and self.path.history is not None
 
     @property
+    def vibrates(self) -> bool:
+        """Whether its answer to small vibrations is asked for."""
+        return self.frequencies != ()
+
+    @property
     def hangs(self) -> bool:
         """Whether a sleeve is crimped on a collar of its own, and the model has ends."""
         return any(layer.crimp for layer in self.muscle.layers) and self._has_ends
@@ -184,11 +200,6 @@ class Case:
     @property
     def _has_ends(self) -> bool:
         return "end_caps" in MODELS[self.model].effects
-
-    @property
-    def vibrates(self) -> bool:
-        """Whether it matters for vibrations at the states of the path."""
-        return self.frequencies != ()
 
     def as_dict(self) -> dict[str, Any]:
         """What the model reads, as plain values; ``from_dict`` reads it back."""

@@ -9,8 +9,9 @@ from pathlib import Path
 from geometry.files import atomic_write
 from solver import record
 from solver.case import Case
+from solver.follow import DamagedMesh
 from solver.freefem import Limits, Outside, Usage
-from solver.solve import DamagedMesh, solve
+from solver.solve import solve
 
 
 @dataclass(frozen=True, kw_only=True)

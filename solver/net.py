@@ -29,9 +29,7 @@ def force(
     diameter: float | None = None,
 ) -> NDArray[np.float64]:
     """Force of Eq. (1) [N]; ``diameter`` is D0 [mm], the inner diameter if left out."""
-    assert muscle.braid is not None
-    angle = muscle.braid.angle
-    d0 = muscle.inner_diameter if diameter is None else diameter
+    angle, d0 = _angle_and_diameter(muscle, diameter)
     area = math.pi * d0**2 / (4 * math.sin(angle) ** 2)
     shortening = 1 - np.asarray(contraction)
     return np.asarray(pressure * area * (3 * math.cos(angle) ** 2 * shortening**2 - 1))
@@ -41,9 +39,7 @@ def contraction_under_load(
     muscle: Muscle, pressure: NDArray[np.float64], load: float, diameter: float | None = None
 ) -> NDArray[np.float64]:
     """Contraction at which Eq. (1) gives ``load`` [N]; NaN where there is no pressure."""
-    assert muscle.braid is not None
-    angle = muscle.braid.angle
-    d0 = muscle.inner_diameter if diameter is None else diameter
+    angle, d0 = _angle_and_diameter(muscle, diameter)
     area = math.pi * d0**2 / (4 * math.sin(angle) ** 2)
     with np.errstate(divide="ignore", invalid="ignore"):
         squared = (1 + load / (area * pressure)) / (3 * math.cos(angle) ** 2)
@@ -57,14 +53,19 @@ def bore(
 
     cos(a') = (1 - eps) cos(a); what lies between bore and net keeps its volume.
     """
-    assert muscle.braid is not None
-    angle, d0 = muscle.braid.angle, muscle.inner_diameter if diameter is None else diameter
+    angle, d0 = _angle_and_diameter(muscle, diameter)
     shortening = 1 - contraction
     with np.errstate(invalid="ignore", divide="ignore"):
         net = d0 * np.sqrt(1 - (shortening * math.cos(angle)) ** 2) / math.sin(angle)
         if diameter is None:
             return np.asarray(net)
         return np.asarray(np.sqrt(net**2 - (d0**2 - muscle.inner_diameter**2) / shortening))
+
+
+def _angle_and_diameter(muscle: Muscle, diameter: float | None) -> tuple[float, float]:
+    """The angle of the braid [rad] and D0 [mm], the inner diameter if left out."""
+    assert muscle.braid is not None  # else the case is refused (solver/case.py)
+    return muscle.braid.angle, muscle.inner_diameter if diameter is None else diameter
 
 
 def solve(case: Case, d0: float | None = None) -> Solution:

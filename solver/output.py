@@ -66,22 +66,22 @@ def starts(case: Case, way: list[Waypoint], work: Path, largest: int) -> dict[fl
 def number(path: Path) -> int:
     """The number in a file; 0 if FreeFEM did not come to write it."""
     text = (files.read(path, LARGEST_TEXT) or b"").decode().strip()
-    number = int(text) if text else 0
-    if not 0 <= number <= LARGEST_COUNT:
-        raise ValueError(f"{number} in {path.name}")
-    return number
+    found = int(text) if text else 0
+    if not 0 <= found <= LARGEST_COUNT:
+        raise ValueError(f"{found} in {path.name}")
+    return found
 
 
 def rows(path: Path, most: int = 1000) -> list[dict[str, float]]:
     """Rows of a table of numbers, ``most`` of them; a last line that was cut off is dropped."""
     text = (files.read(path, LARGEST_ROW * (most + 1)) or b"").decode()
     lines = [line for line in text.splitlines(keepends=True) if line.endswith("\n")]
-    rows = [{n: float(value) for n, value in row.items()} for row in csv.DictReader(lines)]
-    for row in rows:
+    found = [{n: float(value) for n, value in row.items()} for row in csv.DictReader(lines)]
+    for row in found:
         for name, value in row.items():
             if math.isinf(value):
                 raise ValueError(f"{name} is {value}")
-    return rows
+    return found
 
 
 def _waypoint(row: dict[str, float], way: list[Waypoint], path: LoadPath) -> int:

@@ -88,7 +88,6 @@ VARIABLES = {
 SLEEVED = {  # beside them, of a muscle with a sleeve
     "contact_pressure": ("MPa", "pressure of the sleeves on the tube at mid-length"),
 }
-DYNAMIC = "dynamic_stiffness"  # name among the fields of a state
 IN_TIME = {  # beside them, of a path in time
     "time": ("s", "time since the first stop"),
     "work": ("N*mm", "work done on the muscle by its force and pressure since the first stop"),

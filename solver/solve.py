@@ -1,17 +1,17 @@
 """Solve a case by the model it names; whatever happens, the result has a status."""
 
-import tempfile
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.seal import is_sealed, why_none
-from solver import continuity, files, freefem, in_time, output, program, vibrations
+from geometry.seal import why_none
+from solver import continuity, freefem, in_time
 from solver.case import Case
 from solver.continuity import Solved, States
+from solver.follow import End, Means, check_mesh, follow
 from solver.judge import judged
 from solver.load_path import PathKind, Waypoint
 from solver.models import MODELS
@@ -20,7 +20,6 @@ from solver.smoothing import marked
 from solver.status import CaseStatus, StateStatus, state_status
 from solver.zero_force import limit_pressure
 
-LARGEST_FIELDS = 400  # bytes per byte of the mesh
 ABOVE = (2.0, 4.0)  # times the limit pressure of the rubber
 
 
@@ -44,9 +43,8 @@ def solve(
         return failure(case, CaseStatus.MESH_FAILED, f"no mesh at {mesh}"), None
     if reason := why_none(mesh):
         return failure(case, CaseStatus.MESH_FAILED, reason), None
-    _check_mesh(mesh)
-    until = time.monotonic() + limits.wall_time
-    solver = _Solver(mesh, log, limits, until)
+    check_mesh(mesh)
+    solver = _Solver(Means(mesh, log, limits, until=time.monotonic() + limits.wall_time))
     solved, end, lost = solver.curve(case)
     if end.status is None:
         cuts = continuity.snaps(case, solved, solver.again, solver.onwards)
@@ -68,12 +66,12 @@ def solve(
 class _Solver:
     """Curves by FreeFEM on one mesh within one limit of time; ``usage`` is that of all runs."""
 
-    def __init__(self, mesh: Path, log: Path, limits: freefem.Limits, until: float) -> None:
-        self._given = mesh, log, limits, until
+    def __init__(self, means: Means) -> None:
+        self._means = means
         self._starts: dict[float, bytes] = {}  # by swept control: the whole state before a gap
         self.usage: freefem.Usage | None = None
 
-    def curve(self, case: Case) -> tuple[Solved, "_End", set[int]]:
+    def curve(self, case: Case) -> tuple[Solved, End, set[int]]:
         """States and fields, how the last way ended, and stops reached through lost states only.
 
         What lies behind an invalid state on its way is taken from another way, if that leads there.
@@ -116,15 +114,15 @@ class _Solver:
         states: States,
         fields: dict[int, States],
         start: bytes = b"",
-    ) -> "_End":
+    ) -> End:
         """Follow a way, and keep what it leaves for others."""
-        end = _follow(case, way, *self._given, states, fields, start)
+        end = follow(case, way, self._means, states, fields, start)
         if end.usage is not None:
             self.usage = end.usage if self.usage is None else self.usage + end.usage
         self._starts |= end.starts
         return end
 
-    def _add(self, case: Case, way: list[Waypoint], solved: Solved, lost: set[int]) -> "_End":
+    def _add(self, case: Case, way: list[Waypoint], solved: Solved, lost: set[int]) -> End:
         """Follow a way, and add what it reaches for the first time or better to what is known."""
         found, its_fields = unreached(case.path.states, variables(case)), dict[int, States]()
         end = self._walk(case, way, found, its_fields)
@@ -172,120 +170,6 @@ def _from_above(case: Case, states: dict[str, NDArray[np.float64]]) -> list[list
         return []
     limit = limit_pressure(case)
     return [path.way_from_above(max(factor * limit, path.stops[-1])) for factor in ABOVE]
-
-
-class DamagedMesh(OSError):
-    """A mesh that is not as it was written."""
-
-
-@dataclass(frozen=True)
-class _End:
-    """How one run of FreeFEM ended; ``status`` is None if by itself."""
-
-    status: CaseStatus | None
-    reason: str
-    usage: freefem.Usage | None
-    unknowns: int
-    searched: tuple[float, float] | None = None  # where a state of zero force was looked for
-    starts: dict[float, bytes] = field(default_factory=dict)  # start_<waypoint>.txt
-
-
-def _follow(
-    case: Case,
-    way: list[Waypoint],
-    mesh: Path,
-    log: Path,
-    limits: freefem.Limits,
-    until: float,
-    states: dict[str, NDArray[np.float64]],
-    fields: dict[int, dict[str, NDArray[np.float64]]],
-    start: bytes = b"",
-) -> _End:
-    """Run FreeFEM along a way and add what it reaches to ``states`` and ``fields``.
-
-    ``start`` is what another run has left of the state where the way begins, else without load.
-    """
-    status, reason, usage, unknowns = None, "", None, 0
-    starts: dict[float, bytes] = {}
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as scratch:
-        work = Path(scratch)
-        (work / "composition.idp").write_text(program.composition(case))
-        if case.path.history is None:
-            (work / "waypoints.txt").write_text(
-                program.waypoint_text(case, way, started=bool(start))
-            )
-        else:
-            in_time.write(case, work)
-        if case.vibrates:
-            vibrations.write(case, work)
-        if start:
-            (work / "start.txt").write_bytes(start)
-        given = program.flags(case, mesh.resolve())
-        try:
-            usage = _run_until(until, limits, case, given, work, log.resolve())
-        except freefem.OutOfTime:
-            status, reason = CaseStatus.TIMEOUT, f"stopped after {limits.wall_time:g} s, the limit"
-        except freefem.Outside:
-            raise
-        except freefem.FreeFemError as error:
-            status, reason = CaseStatus.SOLVER_ERROR, str(error)
-        searched = None
-        try:
-            ended = files.read(work / "reason.txt", output.LARGEST_TEXT) or b""
-            if status is None:
-                reason = freefem.readable(ended.decode(errors="replace").strip())
-            unknowns = output.number(work / "unknowns.txt")
-            largest = LARGEST_FIELDS * mesh.stat().st_size
-            output.collect(case, way, work, largest, states, fields)
-            if case.path.history is not None:
-                in_time.add(states, output.rows(work / "times.csv", len(way)))
-            if case.vibrates:
-                vibrations.collect(case, way, work, fields)
-            starts = output.starts(case, way, work, largest)
-            searched = output.searched(work / "zero.txt")
-        except output.RUBBISH as error:
-            status = status or CaseStatus.SOLVER_ERROR
-            reason = reason or f"what FreeFEM has written cannot be read ({error})"
-        stops = [point.stop for point in way if point.stop is not None]
-        if not (status or reason) and np.isnan(states["force"][stops]).any():
-            status, reason = CaseStatus.SOLVER_ERROR, "FreeFEM ended early and did not say why"
-        if status is CaseStatus.SOLVER_ERROR:
-            _check_disk(work.parent)
-            _check_mesh(mesh)
-    return _End(status, reason, usage, unknowns, searched, starts)
-
-
-def _run_until(
-    until: float,
-    limits: freefem.Limits,
-    case: Case,
-    given: dict[str, str | float],
-    work: Path,
-    log: Path,
-) -> freefem.Usage:
-    """Run FreeFEM, and once more if a signal from outside stopped it; raises as freefem.run."""
-
-    def run() -> freefem.Usage:
-        left = replace(limits, wall_time=max(until - time.monotonic(), 0))
-        return freefem.run(program.file(case), given, work, log, left, program.includes(case))
-
-    try:
-        return run()
-    except freefem.Interrupted:
-        return run()  # whoever stops it again means it
-
-
-def _check_disk(folder: Path) -> None:
-    """Raise OSError if nothing can be written: then what failed says nothing about the case."""
-    with tempfile.TemporaryFile(dir=folder) as probe:
-        probe.write(bytes(2**16))
-        probe.flush()
-
-
-def _check_mesh(mesh: Path) -> None:
-    """Raise OSError if a mesh is not as it was written, or cannot be read."""
-    if not is_sealed(mesh):
-        raise DamagedMesh(f"{mesh} is damaged")
 
 
 def failure(case: Case, status: CaseStatus, reason: str, log: str = "") -> Solution:

@@ -8,6 +8,7 @@ import pytest
 
 from solver import continuity, solve
 from solver.effects import Effects
+from solver.follow import End, Means
 from solver.freefem import Limits
 from solver.judge import judged
 from solver.load_path import LoadPath
@@ -155,7 +156,7 @@ def test_a_walk_goes_on_from_a_state_that_was_left(
     monkeypatch.setattr(continuity, "SHARE", 0.0)
     stops = tuple(sorted((near, far)))
     case = make_case(model=model, path=LoadPath(kind=kind, held=held, stops=stops))
-    solver = solve._Solver(mesh_of(case), tmp_path / "log", LIMITS, math.inf)
+    solver = solve._Solver(Means(mesh_of(case), tmp_path / "log", LIMITS, math.inf))
     (states, _), _, _ = solver.curve(case)
     ahead = tuple(sorted(((near + far) / 2, far)))
     found = solver.onwards(replace(case, path=replace(case.path, stops=ahead)), near)
@@ -168,7 +169,7 @@ def test_a_walk_goes_on_from_a_state_that_was_left(
 def test_near_stops_leave_nothing(make_case, mesh_of, tmp_path):
     path = LoadPath(kind="isobaric", held=0.3, stops=tuple(k / 100 for k in range(26)))
     case = make_case(model="membrane", path=path)
-    solver = solve._Solver(mesh_of(case), tmp_path / "log", LIMITS, math.inf)
+    solver = solve._Solver(Means(mesh_of(case), tmp_path / "log", LIMITS, math.inf))
     solver.curve(case)
     assert not solver._starts
 
@@ -244,15 +245,15 @@ def curve_by(case, monkeypatch, tmp_path):
     def run(*invalid):
         turns = iter(invalid)
 
-        def follow(case, way, mesh, log, limits, until, states, fields, start):
+        def follow(case, _way, _means, states, _fields, _start):
             bad = next(turns)
             for name, values in states_of(case, lambda e: 500 - 900 * e, lambda e: -900.0).items():
                 states[name][:] = values
             states["min_det_f"][list(bad)] = -1
-            return solve._End(None, "", None, 100)
+            return End(None, "", None, 100)
 
-        monkeypatch.setattr(solve, "_follow", follow)
-        solver = solve._Solver(tmp_path / "mesh", tmp_path / "log", LIMITS, 1.0)
+        monkeypatch.setattr(solve, "follow", follow)
+        solver = solve._Solver(Means(tmp_path / "mesh", tmp_path / "log", LIMITS, 1.0))
         (states, _), end, lost = solver.curve(case)
         return judged(case, states, reason=end.reason, lost=lost)
 

@@ -14,6 +14,7 @@ import pytest
 
 from geometry.seal import write_why_none
 from solver import freefem, record, solve
+from solver.follow import DamagedMesh
 from solver.freefem import Interrupted, Limits, Outside
 from solver.load_path import LoadPath
 from solver.status import CaseStatus, StateStatus
@@ -174,7 +175,7 @@ def test_a_damaged_mesh_is_not_used(case, mesh_of, tmp_path):
     mesh = tmp_path / "a.mesh"
     shutil.copy(mesh_of(case), mesh)
     mesh.write_text(mesh.read_text().replace("75", "76", 1))
-    with pytest.raises(solve.DamagedMesh, match="is damaged"):
+    with pytest.raises(DamagedMesh, match="is damaged"):
         solve.solve(case, mesh, tmp_path / "log", LIMITS)
     done = run_program(case, mesh, tmp_path)
     assert (done.returncode, "tried again" in done.stderr) == (1, True)

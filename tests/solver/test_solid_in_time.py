@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from geometry.mesh_settings import SectionMesh
-from solver import balance, record
+from solver import balance
+from solver.case import DYNAMIC
 from solver.effects import Effects
 from solver.history import History, Start, Valve, Wave, sampled, through
 from solver.load_path import LoadPath
@@ -52,11 +53,11 @@ def test_a_piece_of_an_infinite_tube_is_the_cylinder(make_case, solve_case):
 def test_its_vibrations_are_those_of_the_cylinder(make_case, solve_case):
     path = LoadPath(kind="isobaric", held=0.3, stops=(0.1,))
     given = {"model": "solid", "path": path, "memory": FLAT, "frequencies": (0.1, 1.0, 10.0)}
-    rows = solve_case(make_case(**given, **TUBE)).fields[0][record.DYNAMIC]
+    rows = solve_case(make_case(**given, **TUBE)).fields[0][DYNAMIC]
     assert rows[:, 1] == pytest.approx([10.60006, 10.83892, 11.07638], abs=1e-5)
     assert rows[:, 2] == pytest.approx([0.16595, 0.16486, 0.16242], abs=6e-6)
-    clamped = solve_case(make_case(**given)).fields[0][record.DYNAMIC]
-    membrane = solve_case(make_case(**(given | {"model": "membrane"}))).fields[0][record.DYNAMIC]
+    clamped = solve_case(make_case(**given)).fields[0][DYNAMIC]
+    membrane = solve_case(make_case(**(given | {"model": "membrane"}))).fields[0][DYNAMIC]
     np.testing.assert_allclose(clamped[:, 1:], membrane[:, 1:], rtol=0.015)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver import record
-from solver.case import Case
+from solver.case import DYNAMIC, Case
 from solver.history import History, Wave, sampled
 from solver.load_path import LoadPath
 from solver.memory import Memory
@@ -18,7 +18,7 @@ AT_10 = LoadPath(kind="isobaric", held=0.3, stops=(0.1,))
 
 
 def answers(solution):
-    rows = solution.fields[0][record.DYNAMIC]
+    rows = solution.fields[0][DYNAMIC]
     return rows[:, 1] + 1j * rows[:, 2]
 
 
@@ -80,9 +80,9 @@ def test_the_membrane_loses_less_than_its_first_order(make_case, solve_case):
     solution = solve_case(make_case(path=path, memory=FLAT, frequencies=FREQUENCIES))
     turns = 2j * np.pi * np.array(FREQUENCIES)[:, None] * np.array(FLAT.times)
     first = 3.75647 * np.sum(0.06 * turns / (1 + turns), axis=1)
-    found = solution.fields[1][record.DYNAMIC]
+    found = solution.fields[1][DYNAMIC]
     assert 0.96 < min(found[:, 2] / first.imag) <= max(found[:, 2] / first.imag) < 0.99
-    assert (solution.fields[0][record.DYNAMIC][:, 1] > found[:, 1]).all()
+    assert (solution.fields[0][DYNAMIC][:, 1] > found[:, 1]).all()
 
 
 @pytest.mark.parametrize("model", ["cylinder", "membrane"])

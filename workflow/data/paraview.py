@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from geometry.files import atomic_write
 from solver import record
-from solver.case import Case
+from solver.case import DYNAMIC, Case
 from solver.record import Solution
 from workflow.data import deformed
 from workflow.data.principal_stress import named, principal_of_six
@@ -149,7 +149,7 @@ def _read(path: Path) -> tuple[Case, Solution]:
 
 def _states(solution: Solution) -> list[int]:
     """Numbers of the states that have fields of the muscle."""
-    return [n for n, arrays in sorted(solution.fields.items()) if set(arrays) - {record.DYNAMIC}]
+    return [n for n, arrays in sorted(solution.fields.items()) if set(arrays) - {DYNAMIC}]
 
 
 def _there(solution: Solution) -> str:
@@ -184,7 +184,7 @@ def _write(case: Case, solution: Solution, state: int, output: Path, view: View)
     """Write one state."""
     import meshio
 
-    fields = {k: v for k, v in solution.fields[state].items() if k != record.DYNAMIC}
+    fields = {k: v for k, v in solution.fields[state].items() if k != DYNAMIC}
     parts = _whole(case, fields) if view.whole else _section(fields)
     if view.sectors and not view.whole:
         parts = _turned(parts, view.sectors)

@@ -10,7 +10,8 @@ from collections.abc import Iterable
 import pandas as pd
 import xarray as xr
 
-from solver.record import DYNAMIC, VARIABLES
+from solver.case import DYNAMIC
+from solver.record import VARIABLES
 from workflow.data.records import Curve
 from workflow.data.states import OF_CURVE, attributes
 

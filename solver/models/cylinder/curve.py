@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, minimize_scalar, root
 
 from solver import continuity
-from solver.case import Case
+from solver.case import DYNAMIC, Case
 from solver.effects import Rubber
 from solver.judge import judged
 from solver.load_path import Control, Waypoint
 from solver.models.cylinder.mechanics import REACH, Cylinder, State
 from solver.models.cylinder.observe import derivatives, observed, slopes, volume
 from solver.models.cylinder.vibration import dynamic_stiffness
-from solver.record import DYNAMIC, Solution, unreached, variables
+from solver.record import Solution, unreached, variables
 from solver.zero_force import Finder, Point, Search
 
 Array = NDArray[np.float64]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solver import record
+from solver.case import DYNAMIC
 from solver.record import unreached
 from workflow.analyses.analysis import Solved
 
@@ -56,6 +56,6 @@ def made_up(asked):
         states["force"] = states["force"] + np.where(np.gradient(swept) < 0, 8.0, 0.0)
     if case.frequencies:
         answers = [[f, 10 + np.log10(f), 0.2] for f in case.frequencies]
-        return Solved(asked, converged(states, fields={0: {record.DYNAMIC: np.array(answers)}}))
+        return Solved(asked, converged(states, fields={0: {DYNAMIC: np.array(answers)}}))
     fields = {path.stops.index(stop): WALL for stop in case.fields_at if case.model == "solid"}
     return Solved(asked, converged(states, fields=fields, unknowns=1000 * mesh**2))

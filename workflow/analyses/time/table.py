@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from solver import balance
-from solver.record import DYNAMIC
+from solver.case import DYNAMIC
 from workflow.analyses.analysis import Solved
 from workflow.analyses.time.cases import (
     AT,
