@@ -45,6 +45,33 @@ FEEBLE, HUGE = 1e-3, 10.0  # load as a share of Eq. (1)
 def scene(study: Study, name: str) -> Iterator[StudyError]:
     """Names that exist, the factors that the path takes and no others, and their values."""
     source, asked, keys = study.source, study.scenes[name], ("scenes", name)
+    yield from _names(source, keys, asked)
+    lacking = list(figure_needs.lacking(name, asked))
+    for key, value, allowed in lacking:
+        yield source.refuse((*keys, key), value, allowed)
+    if asked.path is None:
+        yield from _without_path(source, keys, asked)
+        return
+    if "path" in {key for key, _, _ in lacking}:
+        return
+    yield from _figure(study, keys, asked)
+    yield from _effects_of_time(study, keys, asked)
+    if asked.in_time:
+        yield from _in_time(source, keys, asked)
+        return
+    yield from _factors(source, keys, asked)
+    yield from _frequency(study, keys, asked)
+    for quantity in asked.quantities:
+        allowed = _quantity(asked, quantity)
+        if allowed:
+            yield source.refuse((*keys, "quantities"), quantity, allowed)
+    factors = HELD_KEY[asked.path], SWEPT_KEY[asked.path]
+    if all(getattr(asked, key) is not None for key in factors):
+        yield from _values(source, keys, asked)
+
+
+def _names(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
+    """Muscles and variants that there are."""
     for key in ("muscles", "variants"):
         known = dict.fromkeys(["default"] * (key == "variants") + source.names(key))
         for named in getattr(asked, key):
@@ -52,34 +79,36 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
                 allowed = choices(named, known)
                 allowed = source.choices(key, named) if key == "muscles" else allowed
                 yield source.refuse((*keys, key), named, allowed)
-    lacking = list(figure_needs.lacking(name, asked))
-    for key, value, allowed in lacking:
-        yield source.refuse((*keys, key), value, allowed)
-    if asked.path is not None and "path" in {key for key, _, _ in lacking}:
-        return
-    if asked.path is None:
-        unused = (
-            *("pressure", "contraction", "load", "models", "effects", "tolerance", "quantities"),
-            *("cycle", "transient", "figure"),
-        )
-        for key in [key for key in unused if getattr(asked, key)][:1]:
-            value = _as_written(getattr(asked, key))
-            value = "a mapping" if key in ("cycle", "transient", "figure") else value
-            yield source.refuse((*keys, key), value, "this key is not used without a path")
-        return
-    yield from _figure(study, keys, asked)
+
+
+def _without_path(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
+    """A scene that solves nothing; the first key that it has no use for."""
+    unused = (
+        *("pressure", "contraction", "load", "models", "effects", "tolerance", "quantities"),
+        *("cycle", "transient", "figure"),
+    )
+    for key in [key for key in unused if getattr(asked, key)][:1]:
+        value = _as_written(getattr(asked, key))
+        value = "a mapping" if key in ("cycle", "transient", "figure") else value
+        yield source.refuse((*keys, key), value, "this key is not used without a path")
+
+
+def _effects_of_time(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:
+    """Effects that need time, and muscles that have them."""
+    made = [study.muscles[name] for name in asked.muscles if name in study.muscles]
     for effect in OF_TIME:
         state = asked.effects.get(effect)
         if state is not None and not asked.in_time:
             allowed = "effects of a curve out of time: this one is only in time"
-            yield source.refuse((*keys, "effects", effect), state, allowed)
-        made = [study.muscles[name] for name in asked.muscles if name in study.muscles]
+            yield study.source.refuse((*keys, "effects", effect), state, allowed)
         if state == "on" and any(getattr(each, effect) is None for each in made):
             allowed = "off; a muscle of the scene has none"
-            yield source.refuse((*keys, "effects", effect), state, allowed)
-    if asked.in_time:
-        yield from _in_time(source, keys, asked)
-        return
+            yield study.source.refuse((*keys, "effects", effect), state, allowed)
+
+
+def _factors(source: Source, keys: Keys, asked: Scene) -> Iterator[StudyError]:
+    """The factors that a path out of time takes, and no others."""
+    assert asked.path is not None
     for key in ("cycle", "transient"):
         if getattr(asked, key) is not None:
             allowed = f"this key is not used on an {asked.path} path"
@@ -98,13 +127,6 @@ def scene(study: Study, name: str) -> Iterator[StudyError]:
     if asked.path == "isobaric" and of_sheet and of_sheet[-1] <= 0:
         allowed = "contractions up to about where it pulls no more, for a sheet"
         yield source.refuse((*keys, "contraction"), _as_written(of_sheet), allowed)
-    yield from _frequency(study, keys, asked)
-    for quantity in asked.quantities:
-        allowed = _quantity(asked, quantity)
-        if allowed:
-            yield source.refuse((*keys, "quantities"), quantity, allowed)
-    if all(getattr(asked, key) is not None for key in factors):
-        yield from _values(source, keys, asked)
 
 
 def _figure(study: Study, keys: Keys, asked: Scene) -> Iterator[StudyError]:

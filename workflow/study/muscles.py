@@ -16,9 +16,8 @@ from solver.rubber.rubber_law import RubberLaw
 from workflow.study import checks, fit, layers
 from workflow.study.contents import StudiedMuscle
 from workflow.study.errors import LISTED, AlreadyRefused, Findings, StudyError, choices
-from workflow.study.installation import Installation
 from workflow.study.layers import Wound
-from workflow.study.limits import Limits
+from workflow.study.materials import Materials
 from workflow.study.schema import MuscleEntry
 from workflow.study.source import Source
 
@@ -51,14 +50,11 @@ class Muscles:
         source: Source,
         findings: Findings,
         entries: Mapping[str, MuscleEntry],
-        rubbers: Mapping[str, RubberLaw],
-        limits: Mapping[str, Limits],
-        weights: Mapping[str, Installation],
+        materials: Materials,
         modulus: float,
     ) -> None:
-        self.source, self.findings = source, findings
-        self.entries, self.rubbers = entries, rubbers
-        self.limits, self.weights, self.modulus = limits, weights, modulus
+        self.source, self.findings, self.entries = source, findings, entries
+        self.materials, self.modulus = materials, modulus
         self._complete: dict[str, dict[str, Any]] = {}
         self._built: dict[str, StudiedMuscle] = {}
         self._tried: set[str] = set()
@@ -143,15 +139,15 @@ class Muscles:
             every = made["muscle"].layers, made["thread"].stiffness, values.get("thread_diameter")
             self._checked(name, partial(fit.check, *every), {}, {})
             limits["room"] = fit.note(*every, self.modulus)
-        material = values["material"]
-        if not (material in self.limits and material in self.weights):
+        material, known = values["material"], self.materials
+        if material not in known.installations:
             raise AlreadyRefused
         return StudiedMuscle(
             material=material,
-            limits=self._checked(name, partial(replace, self.limits[material]), limits, {}),
+            limits=self._checked(name, partial(replace, known.limits[material]), limits, {}),
             installation=self._checked(
                 name,
-                partial(replace, self.weights[material]),
+                partial(replace, known.installations[material]),
                 {key: values[key] for key in OF_INSTALLATION if key in values},
                 {},
             ),
@@ -172,12 +168,12 @@ class Muscles:
 
     def _rubber(self, name: str, values: dict[str, Any]) -> RubberLaw:
         material = values["material"]
-        if material not in self.rubbers:
+        if material not in self.materials.rubbers:
             if material in self.source.names("materials"):
                 raise AlreadyRefused
             allowed = self.source.choices("materials", material)
             raise self._refuse(name, "material", material, allowed)
-        return self.rubbers[material]
+        return self.materials.rubbers[material]
 
     def _thread(self, name: str, values: dict[str, Any]) -> Thread:
         """The thread of all layers."""

@@ -1,7 +1,7 @@
 """A study file: read, checked as a whole, and turned into muscles, variants and scenes.
 
-Nothing is read from a study file anywhere else. Every muscle is built
-(workflow/study/muscles.py), so that what cannot be built is refused before anything runs.
+Nothing is read from a study file anywhere else. Every material and every muscle is built
+(materials.py, muscles.py), so that what cannot be built is refused before anything runs.
 """
 
 from collections.abc import Collection, Mapping
@@ -10,26 +10,18 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from geometry.refusal import Refusal
 from solver.effects import Effects
-from solver.memory import Memory
 from solver.numerics import KINDS, Numerics, Spread
-from solver.rubber import LAWS
-from solver.rubber.rubber_law import LEAST_KAPPA, RubberLaw
-from workflow.study import checks, design, figure_needs, in_time, maps, sweep, units
+from workflow.study import checks, design, figure_needs, maps, materials, sweep
 from workflow.study.contents import StudiedMuscle, Study, Variant
 from workflow.study.errors import AlreadyRefused, Findings, StudyError, choices, shown
 from workflow.study.folders import DEFAULT
-from workflow.study.installation import Installation
 from workflow.study.judged_quantities import VARIABLES
-from workflow.study.limits import Limits
 from workflow.study.muscles import Muscles
 from workflow.study.schema import (
     QUANTITIES,
     CalibrationEntry,
-    MaterialEntry,
     Scene,
     StudyFile,
     VariantEntry,
@@ -86,43 +78,28 @@ def _of(source: Source, findings: Findings | None) -> Study:
     """The study of a source."""
     found = Findings() if findings is None else findings
     source, file = sweep.spread(source, source.validated(found), found)
-    rubbers: dict[str, RubberLaw] = {}
-    limits: dict[str, Limits] = {}
-    memories: dict[str, Memory] = {}
-    weights: dict[str, Installation] = {}
-    for name, material in file.materials.items():
-        with found.gathering():
-            if material.memory is not None:
-                keys = ("materials", name, "memory")
-                memories[name] = in_time.memory(source, keys, material.memory)
-        with found.gathering():
-            rubbers[name] = _rubber(source, found, name, material)
-        with found.gathering():
-            values = material.model_dump(include={"stretch_limit", "fitted_range"})
-            limits[name] = source.checked(("materials", name), Limits, values)
-            values = material.model_dump(include={"density"})
-            weights[name] = source.checked(("materials", name), Installation, values)
+    made_of = materials.read(source, found, file.materials)
     variants: dict[str, Variant] = {}
     for name, variant in ({"default": VariantEntry()} | file.variants).items():
         with found.gathering():
             variants[name] = _variant(source, found, file, name, variant)
     spread = variants["default"].numerics.spread if "default" in variants else Spread()
-    of_materials = rubbers, limits, weights
-    resolved = Muscles(source, found, file.muscles, *of_materials, spread.modulus)
+    resolved = Muscles(source, found, file.muscles, made_of, spread.modulus)
     muscles: dict[str, StudiedMuscle] = {}
     for name in [name for name in file.muscles if name not in source.groups]:
         with found.gathering():
             made = resolved.built(name)
-            if made.material not in memories and file.materials[made.material].memory is not None:
+            memory = made_of.memories.get(made.material)
+            if memory is None and file.materials[made.material].memory is not None:
                 raise AlreadyRefused
-            muscles[name] = replace(made, memory=memories.get(made.material))
+            muscles[name] = replace(made, memory=memory)
     study = Study(
         source=source,
         muscles=muscles,
         variants=variants,
         scenes={name: _with_shown(scene) for name, scene in file.scenes.items()},
         calibration=file.calibration,
-        rubbers=rubbers,
+        rubbers=made_of.rubbers,
         design=file.design,
         maps=file.map,
         pairs=file.pair,
@@ -167,38 +144,6 @@ def _fit(study: Study, name: str) -> CalibrationEntry:
     if made is None or not made.reference:
         return entry
     return entry.model_copy(update={"reference": made.reference[0]})
-
-
-def _rubber(source: Source, found: Findings, name: str, entry: MaterialEntry) -> RubberLaw:
-    """The rubber of an entry; a bulk modulus that was left out is not to blame."""
-    keys = ("materials", name)
-    unread = {"stretch_limit", "fitted_range", "density", "law", "memory"}
-    law, values = LAWS[entry.law], entry.model_dump(exclude=unread)
-    refused = list(law.out_of_range(values))
-    for refusal in refused:
-        found.add(source.refuse((*keys, refusal.field), refusal.value, refusal.allowed))
-    if refused:
-        raise AlreadyRefused
-    try:
-        return law(**values)
-    except Refusal as refusal:
-        blamed, allowed = refusal.field, refusal.allowed
-        names = [parameter.name for parameter in law.parameters()]
-        unusual = [key for key in names if units.guess(key, values[key])]
-        if blamed == "kappa" and (unusual or not source.has((*keys, "kappa"))):
-            blamed = unusual[0] if unusual else _stiffest(law, values)
-            kappa = values["kappa"]
-            allowed = (
-                f"an initial shear modulus up to {kappa / LEAST_KAPPA:g} MPa "
-                f"at a kappa of {kappa:g} MPa"
-            )
-        raise source.refuse((*keys, blamed), values[blamed], allowed) from None
-
-
-def _stiffest(law: type[RubberLaw], values: Mapping[str, Any]) -> str:
-    """The parameter that has the largest stress."""
-    stress = {p.name: np.max(values[p.name]) for p in law.parameters() if p.unit == "MPa"}
-    return max(stress, key=stress.__getitem__)
 
 
 def _variant(
