@@ -94,29 +94,11 @@ def fit(
         able = ", ".join(each for each in MODELS if MODELS[each].in_time)
         raise StudyError(f"--model {model} is refused\n  allowed: {able}")
     muscle = study.muscles[name]
-    times, points, said = bench.history(file, muscle.muscle.length)
-    if len(times) < FEWEST:
-        raise StudyError(f"{file}: {len(times)} rows with a time; at least {FEWEST} are needed")
-    kept = np.unique(np.linspace(0, len(times) - 1, min(len(times), MOST_ROWS)).round().astype(int))
-    times, points = times[kept] - times[kept[0]], points[kept]
+    times, points, said = _rows(file, muscle.muscle.length)
     pressure, contraction, measured = points.T
     span = _span(file, times)
     trial = _Trial(study, muscle, Store(study, folder), model, span, start, times, points)
-
-    def off(values: Array) -> Array:
-        return trial.left(float(np.exp(values[0])), measured)
-
-    found = least_squares(
-        off,
-        [np.log(FIRST)],
-        bounds=np.log(np.array(SHARES)).reshape(2, 1),
-        diff_step=STEP / abs(np.log(FIRST)),
-        xtol=1e-3,
-        ftol=1e-8,
-    )
-    share = float(np.exp(found.x[0]))
-    left = off(found.x)
-    slope = (off(found.x + STEP) - left) / (share * np.expm1(STEP))
+    share, left, slope = _least_squares(trial, measured)
     if not np.abs(share * slope).max() > NOTHING * np.abs(trial.force(share)).max():
         raise StudyError(
             f"{file}: a memory changes none of its forces\n  allowed: a pressure or contraction "
@@ -138,6 +120,34 @@ def fit(
         said=tuple(said),
         notes=tuple(_notes(share, interval, trial)),
     )
+
+
+def _rows(file: str, length: float) -> tuple[Array, Array, list[str]]:
+    """Times from 0 [s], points (pressure, contraction, force) and how a file was read; not all."""
+    times, points, said = bench.history(file, length)
+    if len(times) < FEWEST:
+        raise StudyError(f"{file}: {len(times)} rows with a time; at least {FEWEST} are needed")
+    kept = np.unique(np.linspace(0, len(times) - 1, min(len(times), MOST_ROWS)).round().astype(int))
+    return times[kept] - times[kept[0]], points[kept], said
+
+
+def _least_squares(trial: "_Trial", measured: Array) -> tuple[float, Array, Array]:
+    """The relaxation per decade that fits best, what is left then [N], and its derivative."""
+
+    def left_by(log_share: Array) -> Array:
+        return trial.left(float(np.exp(log_share[0])), measured)
+
+    found = least_squares(
+        left_by,
+        [np.log(FIRST)],
+        bounds=np.log(np.array(SHARES)).reshape(2, 1),
+        diff_step=STEP / abs(np.log(FIRST)),
+        xtol=1e-3,
+        ftol=1e-8,
+    )
+    share = float(np.exp(found.x[0]))
+    left = left_by(found.x)
+    return share, left, (left_by(found.x + STEP) - left) / (share * np.expm1(STEP))
 
 
 def _span(file: str, times: Array) -> tuple[float, float]:

@@ -41,7 +41,7 @@ STROKES = {"mm": "1", "cm": "10", "m": "1e3", "in": "25.4"}  # in mm: a contract
 KIND_OF = {unit: kind for kind, sizes in UNITS.items() for unit in sizes} | dict.fromkeys(
     STROKES, CONTRACTION
 )
-PLAIN = {PRESSURE: "MPa", CONTRACTION: "1", FORCE: "N"}  # of a number without a unit
+UNIT = {PRESSURE: "MPa", CONTRACTION: "1", FORCE: "N"}  # of a number without one
 EXAMPLES = {PRESSURE: "0.25MPa or 2.5bar", CONTRACTION: "12% or 36mm", FORCE: "200N or 5kg"}
 NAMES = {  # as words before a quantity: stroke 20mm, p=2.5bar
     **dict.fromkeys(("pressure", "p"), PRESSURE),

@@ -17,7 +17,7 @@ from solver.models import MODELS
 from solver.record import Solution
 from solver.status import StateStatus
 from workflow.answers import words
-from workflow.answers.quantities import CONTRACTION, FORCE, KINDS, PRESSURE, read
+from workflow.answers.quantities import CONTRACTION, FORCE, KINDS, PRESSURE, UNIT, read
 from workflow.answers.quick import Quick
 from workflow.answers.store import Store
 from workflow.answers.studies import with_muscle
@@ -36,7 +36,6 @@ TRIED = (0.1, 0.2, 0.4, 0.7, 1.0, 2.0, 4.0)  # MPa, in search of the largest con
 DIGITS = 10  # of a contraction or pressure that is computed, not written
 VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 GUESS = "its error is a guess: models have not been compared on a muscle like this one"
-UNIT = {PRESSURE: "MPa", CONTRACTION: "1", FORCE: "N"}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -276,14 +276,13 @@ def _unit_among(tokens: list[str]) -> tuple[str, list[str]]:
     for last in range(len(tokens), 0, -1):
         for count in (1, 2):
             part = "/".join(tokens[max(last - count, 0) : last])
+            first = last - count
             at_end = last == len(tokens) > 1
             known = unit_of(part) and (len(part) > 1 or at_end or part in "N%")
-            if (
-                known
-                and (last - count >= (len(tokens) > 1) or part == "%")
-                and part != "in" * (last < len(tokens))
-            ):
-                return part, tokens[: last - count] + tokens[last:]
+            behind_a_word = first >= 1 if len(tokens) > 1 else first >= 0
+            links = part == "in" and last < len(tokens)  # force in kN
+            if known and (behind_a_word or part == "%") and not links:
+                return part, tokens[:first] + tokens[last:]
     return "", tokens
 
 

@@ -146,13 +146,12 @@ class Table:
 def of_muscle(studied: StudiedMuscle) -> list[Any]:
     """What a muscle is, in the order of OF_MUSCLE."""
     muscle, braid, thread = studied.muscle, studied.muscle.braid, studied.thread
+    angle = round(math.degrees(braid.angle), 12) if braid else np.nan  # a file says no 17 digits
     return [
         muscle.inner_diameter,
         muscle.wall_thickness,
         muscle.length,
-        round(math.degrees(braid.angle), 12)
-        if braid
-        else np.nan,  # what a file says is no 17-digit number
+        angle,
         braid.lead if braid else np.nan,
         braid.threads_each if braid else np.nan,
         thread.stiffness if thread else np.nan,

@@ -7,8 +7,8 @@ from pathlib import Path
 from geometry.files import atomic_write
 from solver import record
 from solver.models import MODELS
+from workflow.analyses import planner_tables
 from workflow.plan.mesh_error import COLUMNS, FILE
-from workflow.study.errors import StudyError
 
 
 def take_over(table_file: Path, path: Path = FILE) -> None:
@@ -19,10 +19,7 @@ def take_over(table_file: Path, path: Path = FILE) -> None:
     StudyError
         If the analysis has not been evaluated.
     """
-    if not table_file.exists():
-        raise StudyError(f"{table_file}: there is no such table; run snakemake accuracy")
-    with table_file.open(newline="", encoding="utf-8") as stream:
-        rows = [row for row in csv.DictReader(stream) if row["set"] == "scenes"]
+    rows = [row for row in planner_tables.read(table_file, "accuracy") if row["set"] == "scenes"]
     families: dict[tuple[str, ...], list[dict[str, str]]] = {}
     for row in rows:
         families.setdefault((*_written(row), f"{float(row['refinement']):g}"), []).append(row)

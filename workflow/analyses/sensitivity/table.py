@@ -16,11 +16,7 @@ SEED, SAMPLES = 20260101, 128  # base samples, a power of two; SALib runs SAMPLE
 RADII = (0.8, 4.0)  # in initial inner radii: where the radius at a pressure is sought
 SHORTEST = 0.5  # axial stretch, lower end of the search for the free contraction
 Ranges = Mapping[str, float | tuple[float, float]]
-OUTPUTS = (
-    "force",
-    "threshold_pressure",
-    "free_contraction",
-)  # force at the contraction and pressure
+OUTPUTS = ("force", "threshold_pressure", "free_contraction")  # force at both that are given
 UNCERTAIN: Ranges = {  # what is not known of the paper's muscle: share of its value, or ends
     "thread_stiffness": (50.0, 650.0),  # N
     "c10": 0.2,
@@ -89,9 +85,7 @@ def _by_cylinder(normal: Normal, changes: Mapping[str, float]) -> dict[str, floa
 
     lz = 1 - case.path.stops[0]
     found = {"force": force(lz), "threshold_pressure": np.nan, "free_contraction": np.nan}
-    if (
-        found["force"] > 0
-    ):  # a pulling muscle: it has a threshold below this pressure, and contracts further
+    if found["force"] > 0:  # it has a threshold below this pressure, and contracts further
         empty = brentq(lambda r: state(r, lz).pressure, RADII[0], radius(lz))
         at = brentq(lambda r: state(r, lz).force, empty, radius(lz))
         found["threshold_pressure"] = state(at, lz).pressure

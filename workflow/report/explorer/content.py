@@ -6,7 +6,7 @@ dataset, in its order, so that whoever has the page can find a number there agai
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -94,18 +94,7 @@ def content(
             "errors": {name: numbers(values) for name, values in errors.items()},
             **{name: states[name].tolist() for name in ("point", "status", "flags", "note")},
         },
-        "measured": [
-            {
-                "muscle": muscle,
-                "label": found.label,
-                "points": [numbers(row) for row in found.points],
-                "suspect": [numbers(row) for row in found.suspect],
-                "between": _between(found, muscle, table),
-            }
-            for muscle, its in maps.items()
-            if muscle in {each["name"] for each in named}
-            for found in its.values()
-        ],
+        "measured": _measured({each["name"] for each in named}, maps, table),
         "walls": {"quantities": WALL, "states": walls, "leftOut": unshown},
         "sheets": _sheets(curves, muscles or {}),
         "claims": [
@@ -115,6 +104,24 @@ def content(
         "hasClaims": muscles is None or any(map(is_normal, muscles.values())),
         "deviations": _deviations(tables / "deviation.csv"),
     }
+
+
+def _measured(
+    muscles: Collection[str], maps: Mapping[str, Mapping[str, ForceMap]], table: Table
+) -> list[dict[str, Any]]:
+    """The force maps of some muscles: their points, and what they say between them."""
+    return [
+        {
+            "muscle": muscle,
+            "label": found.label,
+            "points": [numbers(row) for row in found.points],
+            "suspect": [numbers(row) for row in found.suspect],
+            "between": _between(found, muscle, table),
+        }
+        for muscle, its in maps.items()
+        if muscle in muscles
+        for found in its.values()
+    ]
 
 
 def _between(found: ForceMap, muscle: str, table: Table) -> dict[str, list[list[float | None]]]:
