@@ -374,7 +374,7 @@ class _Question:
         )
         case, at = self.studied.case(path, model), found[CONTRACTION]
         measured = effect_states.at(case, at, model_choice.steps(rung))
-        if measured is None and (guess := like_muscles.guess(case, rung)):
+        if measured is None and (guess := like_muscles.guess(case, rung, pushed=found[FORCE] < 0)):
             return guess.high + model_choice.smearing(self.study, scene), ""
         note = "" if measured else GUESS
         estimates = model_choice.estimates(self.study, scene, measured)

@@ -52,7 +52,7 @@ def guess(case: Case, effect: str, quantities: Sequence[str] = (FOLLOWS,)) -> Gu
 
 def _guess(case: Case, effect: str, quantity: str) -> Guess | None:
     law, kind = _law(effect, quantity), str(case.path.kind)
-    if law is None or kind not in law.widths or not is_like(case):
+    if law is None or kind not in law.classes or not is_like(case):
         return None
     value, wider = law.at(curve_features(likeness.groups(case), kind)[None], kind)
     if np.isnan(value[0]):

@@ -10,11 +10,12 @@ An error is a power law of the groups, fitted by least squares with a small ridg
 is from that law is what it was on the muscles of the table, each left out of the fit in its turn
 (of states all those of a curve). So of muscles that are drawn as these were a known share has at
 most what is said. Of muscles outside of their ranges nothing is said, nor where the law would be
-carried further than any of its own muscles carries it (by the leverage of the fit): a muscle can be
-in every range and yet be like none.
+carried further than any of its own muscles carries it (by the variance of its value): a muscle can
+be in every range and yet be like none.
 """
 
 import csv
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -36,11 +37,13 @@ STATES = CURVES.with_name("like_states.csv")
 DATA = ("workflow/plan/like_muscles.csv", "workflow/plan/like_states.csv")
 COVERAGE = 0.95  # share of like muscles, or of their states, that have at most what is said
 OF_STATES = 0.93  # of states, where the largest is then raised to that of the curve
+PASSES = 4  # of a fit: widths of classes hang on it, and it on them
 RIDGE = 0.1  # of features whose spread is 1: as a tenth of a muscle that says nothing
 MOST = 50.0  # of a logarithm: far from the middle of the table a spread says nothing
 LEAST = 1e-7  # share: of smaller errors no law is fitted
 BEYOND = 0.1  # of a range (of its logarithm, where it is a ratio): so far a law is believed beyond
 STRETCH = 0.2  # of threads: fibres of nylon break there; beyond it they are rubber, not a net
+FEWEST = 10  # curves of a kind of path, or of a class: of fewer nothing is said of their own
 LOGARITHMIC = ("pressure", "wall", "length", "strain", "lowest")
 PLAIN = ("angle", "furthest", "first", "load", "gap", "sleeve")
 OF_STATE = ("contraction", "at", "pull")
@@ -67,7 +70,7 @@ class Guess:
     median, high : half of like muscles have at most this, and COVERAGE of them
     spread : by which factors these have another one than the median, rising
     lost : share of like muscles on which the rung loses states
-    seconds : of the processor, of such a curve
+    seconds : of the processor, of such a curve on average: some take many times the median
     count : of muscles that it is from
     """
 
@@ -90,50 +93,55 @@ class Law:
 
     Attributes
     ----------
-    spread : of ln(error) around the law where it was left out of the fit, rising, in the widths of
-        its kind of path
-    widths : root mean square of that, by kind of path
-    reach : largest leverage of a row of the fit
+    covariance : of the factors
+    classes : mean and width of ln(error) less the law, where it was left out of the fit, by class
+        (``curve_class``) and by kind of path
+    spread : the same, less that mean and in such widths, rising
+    reach : largest variance of the law's value at a row, in the same widths
     """
 
     centre: Array
     scale: Array
     factors: Array
-    inverse: Array
+    covariance: Array
+    classes: dict[str, tuple[float, float]]
     spread: Array
-    widths: dict[str, float]
     reach: float
 
     @classmethod
-    def fit(cls, features: Array, errors: Array, blocks: Array, kinds: Array) -> "Law":
-        """Of rows of features; rows of one block are left out of the fit together."""
+    def fit(cls, features: Array, errors: Array, blocks: Array, classes: Array) -> "Law":
+        """Of rows of features; rows of one block are left out of the fit together.
+
+        A class is a kind of path, or that and more; what has too few blocks of its own has the
+        width of all of its kind. Rows count by the width of their class, or those that are far from
+        any law would hide the one of the others.
+        """
         centre, scale = features.mean(0), features.std(0)
         scale = np.where(scale > 0, scale, 1.0)
         x = _with_one((features - centre) / scale)
         y = np.log(np.maximum(errors, LEAST))
         ridge = RIDGE * np.eye(x.shape[1])
         ridge[0, 0] = 0.0
-        inverse = np.asarray(np.linalg.inv(x.T @ x + ridge), float)
-        factors = np.asarray(inverse @ x.T @ y)
-        off = y - x @ factors
-        without = np.empty(len(y))
-        for block in np.unique(blocks):
-            of = blocks == block
-            own = x[of] @ inverse @ x[of].T
-            left = np.linalg.solve(np.eye(int(of.sum())) - own, off[of])
-            without[of] = left / np.sqrt(1 + np.diag(own))
-        widths = {str(k): float(np.sqrt(np.mean(without[kinds == k] ** 2))) for k in set(kinds)}
-        spread = np.sort(without / np.array([widths[str(kind)] for kind in kinds]))
-        reach = float(_leverage(x, inverse).max())
-        return cls(centre, scale, factors, inverse, spread, widths, reach)
+        width = np.full(len(y), np.std(y))  # of the class of every row
+        for _ in range(PASSES):
+            weights = width**-2
+            covariance = np.linalg.inv(x.T @ (weights[:, None] * x) + ridge * weights.mean())
+            factors = covariance @ x.T @ (weights * y)
+            far = weights * _variance(x, covariance)
+            off = _left_out(x, y - x @ factors, covariance, weights, blocks) / np.sqrt(1 + far)
+            found = _by_class(off, blocks, classes)
+            mean, width = np.array([_of(found, str(name)) for name in classes]).T
+        spread = np.sort((off - mean) / width)
+        return cls(centre, scale, factors, covariance, found, spread, float(far.max()))
 
-    def at(self, features: Array, kind: str) -> tuple[Array, Array]:
-        """ln(error) by the law, and the width of its spread there; both NaN beyond its reach."""
+    def at(self, features: Array, name: str) -> tuple[Array, Array]:
+        """ln(error) of a class, and the width of its spread; both NaN beyond the law's reach."""
         x = _with_one((features - self.centre) / self.scale)
-        leverage = _leverage(x, self.inverse)
-        leverage[leverage > self.reach] = nan
-        known = np.where(np.isnan(leverage), nan, 1.0)
-        return known * (x @ self.factors), self.widths[kind] * np.sqrt(1 + leverage)
+        mean, width = _of(self.classes, name)
+        far = _variance(x, self.covariance) / width**2
+        far[far > self.reach] = nan
+        value = np.where(np.isnan(far), nan, x @ self.factors + mean)
+        return value, width * np.sqrt(1 + far)
 
     def most(self, value: float, wider: float, share: float) -> float:
         """What a share of muscles has at most, where ``at`` gives this value and width."""
@@ -145,9 +153,14 @@ class Law:
         return float(self.spread[rank - 1]) if rank <= len(self.spread) else inf
 
 
-def guess(case: Case, rung: str, judged: Sequence[str] = (FOLLOWS,)) -> Guess | None:
-    """Of a rung on a curve, of the worst of some quantities; None if no muscles are like it."""
-    return worst([_guess(case, rung, quantity) for quantity in judged])
+def guess(
+    case: Case, rung: str, judged: Sequence[str] = (FOLLOWS,), *, pushed: bool | None = None
+) -> Guess | None:
+    """Of a rung on a curve, of the worst of some quantities; None if no muscles are like it.
+
+    ``pushed`` says whether the muscle is pushed at a state of the curve, where that is known.
+    """
+    return worst([_guess(case, rung, quantity, pushed) for quantity in judged])
 
 
 def worst(guesses: Sequence[G | None]) -> G | None:
@@ -157,15 +170,17 @@ def worst(guesses: Sequence[G | None]) -> G | None:
     return max(known, key=lambda each: each.high) if whole else None
 
 
-def _guess(case: Case, rung: str, quantity: str) -> Guess | None:
+def _guess(case: Case, rung: str, quantity: str, pushed: bool | None) -> Guess | None:
     table = _curves().get(rung)
     if table is None or quantity not in (FOLLOWS, *QUANTITIES) or not is_like(case):
         return None
     law = _law(rung, quantity)
     kind = str(case.path.kind)
-    if kind not in law.widths:
+    if kind not in law.classes:
         return None
-    value, wider = law.at(curve_features(likeness.groups(case), kind)[None], kind)
+    value, wider = law.at(
+        curve_features(likeness.groups(case), kind)[None], curve_class(kind, pushed)
+    )
     if np.isnan(value[0]):
         return None
     median = law.most(value[0], wider[0], 0.5)
@@ -177,7 +192,7 @@ def _guess(case: Case, rung: str, quantity: str) -> Guess | None:
             float(f) for f in np.exp(np.minimum(wider[0] * (law.spread - law.quantile(0.5)), MOST))
         ),
         lost=float(np.mean([float(table[k]["lost"]) > 0 for k in near])),
-        seconds=float(np.median([float(table[k]["seconds"]) for k in near])),
+        seconds=float(np.mean([float(table[k]["seconds"]) for k in near])),
         count=len(law.spread),
     )
 
@@ -200,18 +215,19 @@ def mesh_errors(case: Case, solution: Solution, rung: str, quantity: str) -> tup
         of_curve = curve_features(groups, kind)
         at = [{name: float(v[k]) for name, v in states.items()} for k in np.flatnonzero(known)]
         features = np.array([_state_features(rung, of_curve, groups | each, kind) for each in at])
-        value, wider = law.at(features, kind)
+        pushed = bool(likeness.is_pushed(solution).any())
+        value, wider = law.at(features, curve_class(kind, pushed))
         share = OF_STATES if _is_raised(case) else COVERAGE
         errors = np.exp(np.minimum(value + wider * law.quantile(share), MOST))
-        found[known] = _up_to(errors, case, rung, quantity)
+        found[known] = _up_to(errors, case, rung, quantity, pushed)
     return found, _count(rung)
 
 
-def _up_to(errors: Array, case: Case, rung: str, quantity: str) -> Array:
+def _up_to(errors: Array, case: Case, rung: str, quantity: str, pushed: bool) -> Array:
     """Errors at states with the largest raised to that of the curve, smaller ones by less."""
     if not _is_raised(case):
         return errors
-    whole = _guess(case, rung, quantity)
+    whole = _guess(case, rung, quantity, pushed)
     largest = np.nanmax(errors, initial=0.0)
     if whole is None or not 0 < largest < whole.high:
         return errors
@@ -287,6 +303,32 @@ def _ranges() -> dict[str, tuple[float, float]]:
     return ranges()
 
 
+def curve_class(kind: str, pushed: bool | None = None) -> str:
+    """Of curves that are about equally far from a law: where a muscle is pushed it may fold."""
+    return kind if pushed is None else f"{kind}, {'' if pushed else 'not '}pushed"
+
+
+def _kind(name: str) -> str:
+    """The kind of path of a class."""
+    return name.partition(",")[0]
+
+
+def _of(found: Mapping[str, tuple[float, float]], name: str) -> tuple[float, float]:
+    """What was found of a class, or of all of its kind of path."""
+    return found[name] if name in found else found[_kind(name)]
+
+
+def _by_class(off: Array, blocks: Array, classes: Array) -> dict[str, tuple[float, float]]:
+    """Mean and width by class of enough blocks, and of all of a kind of path."""
+    kinds = np.array([_kind(name) for name in classes])
+    rows = {str(name): classes == name for name in classes} | {str(k): kinds == k for k in kinds}
+    return {
+        name: (float(off[of].mean()), float(off[of].std()))
+        for name, of in rows.items()
+        if name in kinds or len(set(blocks[of])) >= FEWEST
+    }
+
+
 def curve_features(groups: Mapping[str, float], kind: str) -> Array:
     """What a power law of a curve is of: its groups on a kind of path, and terms of these."""
     found = [log(groups[name]) for name in LOGARITHMIC] + [groups[name] for name in PLAIN]
@@ -321,9 +363,19 @@ def _near_crumpling(row: Mapping[str, float]) -> float:
     return pressed / max(borne, 0.1 * pressed) if pressed > 0 else 0.0
 
 
-def _leverage(x: Array, inverse: Array) -> Array:
-    """Of rows of a fit, and of others: how far they are from the middle of its rows."""
-    return np.asarray(np.einsum("ij,jk,ik->i", x, inverse, x))
+def _variance(x: Array, covariance: Array) -> Array:
+    """Of the value of a law, at rows of its fit and at others: the further out the larger."""
+    return np.asarray(np.einsum("ij,jk,ik->i", x, covariance, x))
+
+
+def _left_out(x: Array, off: Array, covariance: Array, weights: Array, blocks: Array) -> Array:
+    """How far rows are from a law that is fitted without their block, by how far from the whole."""
+    found = np.empty(len(off))
+    for block in np.unique(blocks):
+        of = blocks == block
+        own = x[of] @ covariance @ (weights[of, None] * x[of]).T
+        found[of] = np.linalg.solve(np.eye(int(of.sum())) - own, off[of])
+    return found
 
 
 def _with_one(features: Array) -> Array:
@@ -351,21 +403,45 @@ def _rows(rung: str) -> tuple[Array, NDArray[np.str_]]:
 
 @cache
 def _law(rung: str, quantity: str) -> Law:
-    rows = [r for r in _curves()[rung] if 0 <= float(r[quantity] or nan) < inf]
+    rows = _with_error(_curves()[rung], quantity)
     features = np.array([curve_features(groups_of(row), row["path"]) for row in rows])
     errors = np.array([float(row[quantity]) for row in rows])
-    blocks, kinds = (np.array([row[name] for row in rows]) for name in ("curve", "path"))
-    return Law.fit(features, errors, blocks, kinds)
+    return Law.fit(features, errors, *_blocks_and_classes(rows))
 
 
 @cache
 def _state_law(rung: str, quantity: str) -> Law:
-    rows = [r for r in _states()[rung] if float(r[quantity] or nan) >= 0]
+    rows = _with_error(_states()[rung], quantity)
     found = ((groups_of(row), row["path"]) for row in rows)
     features = np.array([_state_features(rung, curve_features(row, k), row, k) for row, k in found])
     errors = np.array([float(row[quantity]) for row in rows])
-    blocks, kinds = (np.array([row[name] for row in rows]) for name in ("curve", "path"))
-    return Law.fit(features, errors, blocks, kinds)
+    return Law.fit(features, errors, *_blocks_and_classes(rows))
+
+
+def _with_error(rows: Sequence[dict[str, str]], quantity: str) -> list[dict[str, str]]:
+    """Rows whose error is known, of kinds of path of which there are enough curves.
+
+    An error of nothing is that of states which no finer mesh has.
+    """
+    known = [row for row in rows if 0 < float(row[quantity] or nan) < inf]
+    curves = {(row["path"], row["curve"]) for row in known}
+    counts = Counter(kind for kind, _ in curves)
+    return [row for row in known if counts[row["path"]] >= FEWEST]
+
+
+def _blocks_and_classes(rows: Sequence[Mapping[str, str]]) -> tuple[Array, Array]:
+    """Curves of rows, and their classes."""
+    blocks = np.array([row["curve"] for row in rows])
+    return blocks, np.array([curve_class(r["path"], _pushed().get(r["curve"])) for r in rows])
+
+
+@cache
+def _pushed() -> dict[str, bool]:
+    """Whether a muscle is pushed at a state that a mesh has, by curve."""
+    found: dict[str, bool] = {}
+    for row in (row for of_rung in _states().values() for row in of_rung):
+        found[row["curve"]] = found.get(row["curve"], False) or float(row["pull"]) < 0
+    return found
 
 
 def groups_of(row: Mapping[str, str]) -> dict[str, float]:

@@ -15,7 +15,7 @@ from solver.load_path import PathKind
 from solver.record import Solution
 from workflow.plan.judged import FOLLOWS, QUANTITIES, is_valid, scale, variable_of
 
-__all__ = ["FOLLOWS", "QUANTITIES", "groups", "of_states", "share"]
+__all__ = ["FOLLOWS", "QUANTITIES", "groups", "is_pushed", "of_states", "share"]
 
 
 def groups(case: Case) -> dict[str, float]:
@@ -83,6 +83,11 @@ def of_states(case: Case, solution: Solution) -> dict[str, NDArray[np.float64]]:
         "at": found["pressure"] / case.rubber.shear_modulus,
         "pull": found["force"] / (top * area),
     }
+
+
+def is_pushed(solution: Solution) -> NDArray[np.bool_]:
+    """At which states a muscle is pushed: those that may be believed, with a negative force."""
+    return np.asarray(is_valid(solution) & (solution.states["force"] < 0))
 
 
 def share(case: Case, solution: Solution, exact: Solution, quantity: str) -> NDArray[np.float64]:

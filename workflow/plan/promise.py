@@ -8,9 +8,10 @@ proved exact enough
   and what the better one may itself be off are within the tolerance,
 - or, of a mesh, by a coarser one on this curve.
 
-Where neither is so it climbs, but not to a finer mesh where coarser ones have lost states, or where
-the tube is folded: finer ones mostly lose such states, at many times the cost. Nothing is promised
-there of states that none has, as a finer one may have them. Where two meshes leave open
+Like muscles say nothing of a tube that a mesh shows to be folded. Where no rung is proved it
+climbs, but not to a finer mesh where coarser ones have lost states, or where the tube is folded:
+finer ones mostly lose such states, at many times the cost. Nothing is promised there of states that
+none has, as a finer one may have them. Where two meshes leave open
 few states only, a finer one is solved at these alone: where a muscle folds, a curve of it costs
 many times such a state. Of the cheapest rung that like muscles
 prove it takes the finest mesh that they prove and that costs at most ``MORE`` times as much, which
@@ -31,7 +32,7 @@ from solver.case import Case, canonical, digest
 from solver.record import Solution
 from workflow.plan.judged import FOLLOWS, ZERO, difference, is_answer, is_valid, variable_of
 from workflow.plan.like_muscles import Guess, guess, seconds
-from workflow.plan.likeness import share
+from workflow.plan.likeness import is_pushed, share
 
 CONFIDENT = 0.97  # share of like muscles on which a rung must hold to be taken without a check
 BY_COARSER = {  # error of a mesh by its difference from the next coarser one of the ladder:
@@ -42,8 +43,7 @@ START = 40  # states that cost as much as getting to the first one
 CHEAP = 0.6  # of the cost of all states: a check at a few of them that costs more is not worth it
 MORE = 1.5  # times the cost of a mesh that holds: a finer one is taken for so much
 TELLING = 4  # states at most of a check
-FOLDED = 0.75  # det F: where a pushed muscle has less on a mesh, the tube has a crease
-PUSHED = 3.0  # times the error of like muscles, where a muscle is pushed: 97 of 100 have less
+FOLDED = 0.8  # det F: where a pushed muscle has less on a mesh, the tube has a crease
 LIKELY = 0.8  # error of the default mesh by its difference from the coarser one: 7 of 10 have less
 Solve = Callable[[Case], Solution]
 Known = Callable[[Case], Solution | None]
@@ -220,11 +220,17 @@ class _Climb:
         return Verdict(known.high, known.chance(self.asked.tolerance), by)
 
     def _guess(self, name: str) -> Guess | None:
-        """By like muscles; of a muscle that is seen to be pushed they say less."""
-        known = self.asked.guesses[name]
-        if known is None or not any(_pushed(found).any() for found in self.solved.values()):
-            return known
-        return replace(known, median=PUSHED * known.median, high=PUSHED * known.high)
+        """By like muscles: those that are pushed too, or not, once that is known."""
+        seen = self._is_pushed()
+        if seen is None:
+            return self.asked.guesses[name]
+        return guess(self.asked.rungs[name], name, self.asked.judged, pushed=seen)
+
+    def _is_pushed(self) -> bool | None:
+        """Whether a state of the curve is pushed, as far as a solved rung shows it."""
+        if any(is_pushed(found).any() for found in self.solved.values()):
+            return True
+        return False if any(is_valid(found).all() for found in self.solved.values()) else None
 
     def _lost(self, name: str) -> int:
         """States of a solved rung that are no answer, unless no mesh of the best model has one."""
@@ -287,7 +293,7 @@ class _Climb:
         if measured := self._by_coarser(name):
             return measured.error
         known = self._guess(name)
-        return known.high if known is not None else inf
+        return inf if known is None or self._is_folded(name) else known.high
 
     def _meshes(self, name: str) -> list[str]:
         """The meshes of the model of a rung, finest first."""
@@ -358,22 +364,20 @@ class _Climb:
         return next(short, meshes[-1])
 
     def _given_up(self, name: str) -> bool:
-        """Whether a mesh is not tried: two coarser ones have lost states, or one is folded."""
+        """Whether a mesh is not tried: a coarser one has lost states, or is folded."""
         if name in self.solved:
             return False
-        lost = [not is_valid(each).all() for each in self._coarser(name)]
+        lost = any(not is_valid(each).all() for each in self._coarser(name))
         open_ones_lost = inf in map(self.closed.get, self._meshes(name))
-        return (len(lost) > 1 and any(lost)) or open_ones_lost or self._is_folded(name)
+        return lost or open_ones_lost or self._is_folded(name)
 
     def _is_folded(self, name: str) -> bool:
-        """Whether a tube has a crease on a coarser mesh, which is the sharper the finer the mesh.
+        """Whether a tube has a crease by a mesh or a coarser one: the sharper the finer the mesh.
 
         At the ends of muscles that pull, rubber may have as small a det F, and nothing folds.
         """
-        if name in self.solved:
-            return False
-        each = self._coarser(name)
-        return any((found.states["min_det_f"][_pushed(found)] < FOLDED).any() for found in each)
+        each = [*self._coarser(name), *([self.solved[name]] if name in self.solved else [])]
+        return any((found.states["min_det_f"][is_pushed(found)] < FOLDED).any() for found in each)
 
     def _coarser(self, name: str) -> list[Solution]:
         """By the coarser meshes of a model, of those that are there."""
@@ -465,11 +469,6 @@ class _Climb:
         verdicts = {each: self.verdict(each) for each in self.names}
         found = verdicts[name]
         return Outcome(name, found.holds, found.error, found.by, tuple(self.tried), verdicts)
-
-
-def _pushed(solution: Solution) -> np.ndarray:
-    """At which states a muscle is pushed: those that may be believed, with a negative force."""
-    return np.asarray(is_valid(solution) & (solution.states["force"] < 0))
 
 
 def _worse(error: float) -> float:

@@ -7,9 +7,8 @@ import pytest
 
 from solver.record import unreached
 from workflow.analyses.analysis import Solved
-from workflow.analyses.ladder.cases import COUNT
 from workflow.analyses.like_effects import table
-from workflow.analyses.like_effects.cases import PAIRS, cases
+from workflow.analyses.like_effects.cases import COUNT, PAIRS, cases
 from workflow.analyses.like_effects.take_over import take_over
 from workflow.study.errors import StudyError
 

@@ -11,9 +11,8 @@ from solver.effects import EFFECTS
 from solver.load_path import LoadPath
 from solver.material import Thread
 from workflow.analyses.analysis import Solved
-from workflow.analyses.ladder.cases import COUNT
 from workflow.analyses.like_effects import table
-from workflow.analyses.like_effects.cases import PAIRS, cases
+from workflow.analyses.like_effects.cases import COUNT, PAIRS, cases
 from workflow.plan import like_effects
 from workflow.plan.judged import FOLLOWS
 

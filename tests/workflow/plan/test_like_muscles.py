@@ -75,7 +75,34 @@ def test_what_is_said_holds_for_the_muscles_of_the_table(rung):
     law = like_muscles._law(rung, FOLLOWS)
     assert len(law.spread) > 60
     assert np.mean(law.spread <= law.quantile(like_muscles.COVERAGE)) >= like_muscles.COVERAGE
-    assert max(law.widths.values()) < 1.3  # a factor of 3.7, as a root mean square
+    assert max(width for _, width in law.classes.values()) < 1.3  # a factor of 3.7
+
+
+def test_where_muscles_are_pushed_they_are_further_from_the_law(make_case):
+    """Most of them, as a fold is in no group; and what is not known is between the two."""
+    case = make_case(model="solid", path=PATH)
+    pulled, known, pushed = (
+        like_muscles.guess(case, "solid", pushed=each) for each in (False, None, True)
+    )
+    assert pulled.high < known.high < pushed.high
+    assert pushed.high > 2 * pulled.high
+
+
+def test_a_class_has_its_own_mean_and_width_unless_it_is_small():
+    random = np.random.default_rng(3)
+    x = random.normal(size=(90, 2))
+    wide = np.arange(90) % 3 == 0  # 30 of them
+    off = np.where(wide, 1 + 1.5 * random.normal(size=90), 0.3 * random.normal(size=90))
+    classes = np.where(wide, "isobaric, pushed", "isobaric, not pushed").astype(object)
+    classes[:2] = "isometric", "isometric, pushed"
+    law = like_muscles.Law.fit(x, np.exp(x @ [1.0, -1.0] - 6 + off), np.arange(90), classes)
+    assert law.factors[1:] == pytest.approx([1.0, -1.0] * law.scale, abs=0.1)  # not the wide ones'
+    means, widths = zip(*(law.classes[f"isobaric, {n}pushed"] for n in ("", "not ")), strict=True)
+    assert means[0] - means[1] == pytest.approx(1, abs=0.5)
+    assert widths == pytest.approx((1.5, 0.3), rel=0.3)
+    assert "isometric, pushed" not in law.classes
+    at = [law.at(x[:1], name) for name in ("isometric", "isometric, pushed")]
+    assert at[0] == at[1]
 
 
 def test_better_rungs_are_guessed_to_be_more_exact(make_case):
@@ -148,7 +175,7 @@ def test_a_muscle_of_latex_has_a_bar_of_its_own(make_case, muscle):
     assert found.max() >= 0.005 * 110
     assert np.argmax(found) == 10
     by = mesh_error.known_by(case, converged(states))
-    assert set(by) == {"estimated from 112 like muscles"}
+    assert set(by) == {"estimated from 240 like muscles"}
 
 
 def test_nothing_is_guessed_where_threads_stretch_by_a_fifth(make_case):

@@ -101,7 +101,7 @@ def test_error_of_a_curve(make_case):
     measured = mesh_error.error(case, states, "force", finer)
     np.testing.assert_allclose(measured, [2, 4, np.nan])
     words = [mesh_error.known_by(case, states, other) for other in (None, finer)]
-    like = "estimated from 112 like muscles"
+    like = "estimated from 240 like muscles"
     assert words == [[like, like, "not known"], ["measured here"] * 2 + ["not known"]]
     none = make_case(model="cylinder", path=path)
     np.testing.assert_array_equal(mesh_error.error(none, states, "force"), [0, 0, np.nan])

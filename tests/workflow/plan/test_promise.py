@@ -37,14 +37,18 @@ def rungs(make_case):
 
 
 def guessed(monkeypatch, **errors):
-    """Guesses by rung, each with a spread of a factor of two to either side; or none."""
+    """Guesses by rung, each with a spread of a factor of two to either side; or none.
 
-    def made(case, name, judged):
+    Of muscles that are known to be pushed, of six.
+    """
+
+    def made(case, name, judged, *, pushed=None):
         median = errors.get(name.replace(", ", "_"))
         if median is None:
             return None
-        factors = tuple(float(f) for f in 2 ** np.linspace(-1, 1, 99))
-        return Guess(median, 2 * median, factors, 0.0, SECONDS[name], 99)
+        spread = 6 if pushed else 2
+        factors = tuple(float(f) for f in spread ** np.linspace(-1, 1, 99))
+        return Guess(median, spread * median, factors, 0.0, SECONDS[name], 99)
 
     monkeypatch.setattr(module, "guess", made)
 
@@ -214,7 +218,7 @@ def test_a_folded_tube_is_refined_no_further(meshes, monkeypatch):
     assert kept(meshes, solver, 0.01).rung == "solid, finer"
 
 
-def test_of_a_pushed_muscle_like_ones_say_less(meshes, monkeypatch):
+def test_of_a_pushed_muscle_say_those_that_are_pushed_too(meshes, monkeypatch):
     guessed(monkeypatch, solid=0.002, solid_finer=0.0019)
     assert kept(meshes, Solver(meshes), 0.005).by == "estimated from 99 like muscles"
     pressed = {"solid, coarser": 0.9, "solid": 0.9}
@@ -223,8 +227,34 @@ def test_of_a_pushed_muscle_like_ones_say_less(meshes, monkeypatch):
     assert [name for name, _ in solver.asked] == ["solid", "solid, coarser"]
     assert (end.rung, end.holds, end.by) == ("solid", True, "measured here by solid, coarser")
     by_like = end.verdicts["solid, finer"]
-    assert by_like.error == pytest.approx(3 * 2 * 0.0019)
+    assert by_like.error == pytest.approx(6 * 0.0019)
     assert not by_like.holds
+
+
+@pytest.mark.parametrize(
+    ("lost", "force", "expected"),
+    [((), 10.0, False), ((), -10.0, True), (("solid",), -10.0, None), (("solid",), 10.0, None)],
+)
+def test_whether_a_muscle_is_pushed_is_not_known_of_states_that_are_lost(
+    meshes, monkeypatch, lost, force, expected
+):
+    asked = []
+    guessed(monkeypatch)
+    monkeypatch.setattr(module, "guess", lambda *_, pushed=None: asked.append(pushed))
+    solver = Solver(meshes, lost=lost, det_f={"solid": 0.95})
+    solver.pushed = force
+    solver(meshes["solid"])
+    promise = Promise(0.01, (FOLLOWS,), meshes)
+    module._Climb(promise, solver, solver.there).verdict("solid, finer")
+    assert asked[-1] is expected
+
+
+def test_like_muscles_say_nothing_of_a_fold(meshes, monkeypatch):
+    guessed(monkeypatch, solid=1e-4)
+    solver = Solver(meshes, det_f={"solid, coarser": 0.9, "solid": 0.6}, solid_coarser=0.01)
+    end = kept(meshes, solver, 0.05)
+    assert [name for name, _ in solver.asked] == ["solid", "solid, coarser"]
+    assert (end.holds, end.by) == (True, "measured here by solid, coarser")
 
 
 @pytest.mark.parametrize(("det_f", "force"), [(0.7, 10.0), (0.8, -10.0)])
@@ -269,9 +299,21 @@ def test_a_coarser_mesh_that_has_lost_states_says_nothing_of_a_finer_one(meshes,
     known = {"solid_coarser": 9e-3, "solid": 3e-3, "solid_finer": 1e-4}
     guessed(monkeypatch, cylinder=0.1, membrane=0.03, **known)
     solver = Solver(meshes, lost=("solid, coarser",))
-    solver(meshes["solid, coarser"])
+    for name in ("solid, coarser", "solid"):
+        solver(meshes[name])
     end = kept(meshes, solver, 0.01)
     assert (end.rung, end.holds, end.by) == ("solid", True, "estimated from 99 like muscles")
+
+
+@pytest.mark.parametrize("lost", ["solid, coarser", "solid"])
+def test_a_mesh_that_has_lost_states_is_not_refined(meshes, monkeypatch, lost):
+    """Even where like muscles would prove a finer one: it mostly loses states as well."""
+    guessed(monkeypatch, solid_finer=1e-4)
+    solver = Solver(meshes, lost=(lost,))
+    solver(meshes[lost])
+    end = kept(meshes, solver, 0.01)
+    assert "solid, finer" not in {name for name, _ in solver.asked}
+    assert not end.holds
 
 
 def test_a_rung_that_has_lost_states_proves_no_other(meshes, monkeypatch):
@@ -298,7 +340,9 @@ def test_where_no_rung_has_a_state_that_is_said(rungs, monkeypatch):
 
 def test_a_state_that_no_rung_has_is_no_failure_of_one(rungs, monkeypatch):
     guessed(monkeypatch, cylinder=0.1, membrane=0.004, solid=1e-4, solid_finer=1e-5)
-    end = kept(rungs, Solver(rungs, lost=tuple(rungs), membrane=0.004), 0.02)
+    solver = Solver(rungs, lost=tuple(rungs), membrane=0.004)
+    solver(rungs["solid, finer"])
+    end = kept(rungs, solver, 0.02)
     assert (end.rung, end.holds) == ("solid, finer", True)
     by = "measured here by solid, finer at all states; 1 of them no rung has"
     assert end.verdicts["membrane"].by == by

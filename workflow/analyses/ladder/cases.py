@@ -15,7 +15,7 @@ from workflow.analyses.random_muscles import RandomCurve, curves
 from workflow.plan.effect_costs import MESHES
 from workflow.study.contents import Study
 
-SEED, COUNT = 15, 112  # other muscles than those by which a promise is tried
+SEED, COUNT = 15, 240  # other muscles than those by which a promise is tried
 FINEST, EVERY = 3, 8  # refinement; and which curves have it of the solid
 
 

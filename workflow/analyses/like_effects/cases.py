@@ -1,8 +1,8 @@
 """What leaving out an effect changes on muscles of all kinds: its cases.
 
-The random curves of the ladder, each effect within the fullest model that can be had with and
-without it, as in the analysis of effects. Single threads are left out: the cell takes minutes for a
-curve, and is of no braid with a gap.
+The first of the random curves of the ladder, each effect within the fullest model that can be had
+with and without it, as in the analysis of effects. Single threads are left out: the cell takes
+minutes for a curve, and is of no braid with a gap.
 """
 
 from solver.case import Case
@@ -11,10 +11,11 @@ from solver.refusal import UnsolvableCase
 from workflow.analyses.analysis import AnalysisCase
 from workflow.analyses.effects.cases import SETUPS, Setup
 from workflow.analyses.effects.table import SWITCHES
-from workflow.analyses.ladder.cases import COUNT, SEED
+from workflow.analyses.ladder.cases import SEED
 from workflow.analyses.random_muscles import RandomCurve, curves
 from workflow.study.contents import Study
 
+COUNT = 112  # the spread of what an effect changes is known well enough by these
 NOT_HERE = ("discrete_threads",)
 PAIRS = {  # of the effects of the vocabulary: (setup with it, setup without)
     effect: SWITCHES[effect] for effect in EFFECTS if effect not in NOT_HERE
