@@ -13,7 +13,8 @@ from solver.models import MODELS
 from solver.models.cylinder.curve import solve
 from workflow.data import labelled, tidy
 from workflow.data.records import Curve
-from workflow.data.states import SceneData, Table
+from workflow.data.scene_data import SceneData
+from workflow.data.states import Table
 from workflow.figures import fig03, general
 from workflow.figures.muscle_drawing import laid_open
 from workflow.plan.plan import plan

@@ -16,17 +16,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from solver.status import Flag, StateStatus
-from workflow.data.states import (
-    FLAGS,
-    GOOD,
-    REFERENCE,
-    SHOWN,
-    STRENGTH,
-    STRETCH,
-    SUSPECT,
-    TIME,
-    error_of,
-)
+from workflow.data.scene_data import FLAGS, REFERENCE, STRENGTH, STRETCH, SUSPECT, TIME, error_of
+from workflow.data.states import GOOD, SHOWN
 from workflow.data.strain import LONG
 from workflow.figures.labels import SERIES, shown
 from workflow.figures.style import (

@@ -11,14 +11,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from workflow.data import bench, paper, reference
-from workflow.data.states import (
-    CONTRACTION,
-    FORCE,
-    PRESSURE,
-    SUSPECT,
-    reference_curves,
-    states,
-)
+from workflow.data.scene_data import CONTRACTION, FORCE, PRESSURE, SUSPECT, reference_curves, states
 from workflow.figures import curves
 from workflow.figures.labels import constants
 from workflow.figures.style import FULL, SOFT, look_of, panels, percent

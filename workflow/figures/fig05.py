@@ -14,7 +14,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
-from workflow.data.states import CONTRACTION, GOOD, NUMBER, PRESSURE, STRENGTH, Table, numbered
+from workflow.data.scene_data import CONTRACTION, NUMBER, PRESSURE, STRENGTH, numbered
+from workflow.data.states import GOOD, Table
 from workflow.data.stress import LARGEST, along_meridian, wall
 from workflow.figures import curves, stress_views
 from workflow.figures.labels import SERIES, constants, series

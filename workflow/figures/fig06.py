@@ -7,7 +7,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from workflow.data import bench, paper
-from workflow.data.states import CONTRACTION, FORCE, GOOD, PRESSURE, reference_at, states
+from workflow.data.scene_data import CONTRACTION, FORCE, PRESSURE, reference_at, states
+from workflow.data.states import GOOD
 from workflow.figures import curves
 from workflow.figures.labels import constants, shown
 from workflow.figures.style import COLUMN_WIDTH, SOFT, look_of, panels

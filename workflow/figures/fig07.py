@@ -11,7 +11,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from workflow.data import paper
-from workflow.data.states import (
+from workflow.data.scene_data import (
     COLUMN,
     CONTRACTION,
     DIAMETER,

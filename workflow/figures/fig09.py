@@ -4,7 +4,7 @@ from typing import Any
 
 import pandas as pd
 
-from workflow.data.states import ANGLE
+from workflow.data.scene_data import ANGLE
 from workflow.figures import force_contraction
 from workflow.figures.force_contraction import draw
 

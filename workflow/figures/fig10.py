@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from workflow.data.states import DIAMETER, THREADS
+from workflow.data.scene_data import DIAMETER, THREADS
 from workflow.figures import force_contraction
 from workflow.figures.force_contraction import draw
 

@@ -13,16 +13,16 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from workflow.data import paper
-from workflow.data.states import (
+from workflow.data.scene_data import (
     CONTRACTION,
     DIAMETER,
     FLAGS,
     FORCE,
-    GOOD,
     PRESSURE,
     THREADS,
     error_of,
 )
+from workflow.data.states import GOOD
 from workflow.figures import curves, force_contraction
 from workflow.figures.labels import SERIES, constants, muscles
 from workflow.figures.style import COLUMN_WIDTH, panels, percent

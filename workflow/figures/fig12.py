@@ -5,7 +5,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from workflow.data.states import CONTRACTION, FORCE
+from workflow.data.scene_data import CONTRACTION, FORCE
 from workflow.figures import walls
 
 

@@ -4,7 +4,7 @@ import importlib
 from pathlib import Path
 
 from geometry.files import atomic_write
-from workflow.data.states import SceneData
+from workflow.data.scene_data import SceneData
 from workflow.plan.plan import Plan
 from workflow.study import figure_needs
 from workflow.study.errors import StudyError, choices

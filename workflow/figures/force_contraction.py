@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from workflow.data.states import CONTRACTION, FORCE, PRESSURE, describe, states
+from workflow.data.scene_data import CONTRACTION, FORCE, PRESSURE, describe, states
 from workflow.figures import curves
 from workflow.figures.labels import SERIES, constants, muscles, series
 from workflow.figures.style import COLUMN_WIDTH, panels, percent

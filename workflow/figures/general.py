@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from solver.load_path import PathKind
 from solver.record import IN_TIME, SLEEVED, VARIABLES
 from workflow.data import bench
-from workflow.data.states import (
+from workflow.data.scene_data import (
     COLUMN,
     CONTRACTION,
     CONTROL,
@@ -21,7 +21,6 @@ from workflow.data.states import (
     FORCE,
     PRESSURE,
     REFERENCE,
-    SHOWN,
     STRENGTH,
     STRETCH,
     SUSPECT,
@@ -30,6 +29,7 @@ from workflow.data.states import (
     reference_curves,
     states,
 )
+from workflow.data.states import SHOWN
 from workflow.figures import curves
 from workflow.figures.labels import SERIES, constants, muscles, series
 from workflow.figures.style import COLUMN_WIDTH, look_of, panels, percent

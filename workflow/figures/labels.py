@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from workflow.data.states import ANGLE, CONTRACTION, DIAMETER, FORCE, PRESSURE, THREADS, WALL
+from workflow.data.scene_data import ANGLE, CONTRACTION, DIAMETER, FORCE, PRESSURE, THREADS, WALL
 
 SERIES = "series"  # column: what the curves of a figure are told apart by
 SHOWN: dict[str, Callable[[Any], str]] = {

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from solver.status import CaseStatus
 from workflow.data import records
-from workflow.data.states import SceneData
+from workflow.data.scene_data import SceneData
 from workflow.plan.plan import Plan
 from workflow.programs import add_study, settled_plan_of
 from workflow.study.errors import StudyError, choices

@@ -17,7 +17,8 @@ from solver.record import VARIABLES
 from solver.status import Flag
 from workflow import data
 from workflow.data import dataset, records, tidy
-from workflow.data.states import SceneData, Table
+from workflow.data.scene_data import SceneData
+from workflow.data.states import Table
 from workflow.plan.plan import Place
 from workflow.run import failures
 from workflow.study.errors import StudyError

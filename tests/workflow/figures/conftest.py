@@ -14,7 +14,8 @@ from solver.material import Thread
 from solver.rubber.mooney_rivlin.law import MooneyRivlin
 from solver.status import StateStatus
 from workflow.data.records import Curve
-from workflow.data.states import SceneData, Table
+from workflow.data.scene_data import SceneData
+from workflow.data.states import Table
 from workflow.plan.plan import Place, plan
 from workflow.study.contents import StudiedMuscle
 from workflow.study.study import load

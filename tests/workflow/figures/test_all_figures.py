@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from solver.status import StateStatus
-from workflow.data.states import SceneData
+from workflow.data.scene_data import SceneData
 from workflow.figures import style
 
 FIGURES = [f"fig{number:02}" for number in range(3, 14)]

@@ -8,7 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from solver.status import StateStatus
-from workflow.data.states import CONTRACTION, FORCE, PRESSURE, states
+from workflow.data.scene_data import CONTRACTION, FORCE, PRESSURE, states
 from workflow.figures import curves, style
 from workflow.figures.labels import SERIES, series
 

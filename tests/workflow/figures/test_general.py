@@ -10,7 +10,7 @@ from solver.freefem import Limits
 from solver.solve import solve
 from workflow.__main__ import main
 from workflow.data import bench
-from workflow.data.states import COLUMN, CONTRACTION, FORCE, PRESSURE, TIME, SceneData
+from workflow.data.scene_data import COLUMN, CONTRACTION, FORCE, PRESSURE, TIME, SceneData
 from workflow.figures import general, style
 from workflow.figures.labels import SERIES
 from workflow.plan.plan import read

@@ -13,7 +13,8 @@ import pytest
 from solver import record
 from solver.models import MODELS
 from solver.status import Flag, StateStatus
-from workflow.data.states import FLAGS, GOOD, SHOWN, SceneData
+from workflow.data.scene_data import FLAGS, SceneData
+from workflow.data.states import GOOD, SHOWN
 from workflow.figures import curves, style
 from workflow.figures.labels import SERIES
 from workflow.plan.plan import plan
@@ -326,7 +327,7 @@ def test_every_model_has_a_look_of_its_own():
 def test_a_source_without_a_look_is_drawn_by_its_name(small_scene):
     from matplotlib.figure import Figure
 
-    from workflow.data.states import CONTRACTION, FORCE, states
+    from workflow.data.scene_data import CONTRACTION, FORCE, states
 
     table = states(small_scene(), ["force"]).assign(source="bench", **{SERIES: "only"})
     for draw in (curves.by_source, curves.by_series):
@@ -338,7 +339,7 @@ def test_a_source_without_a_look_is_drawn_by_its_name(small_scene):
 def test_a_missing_case_is_named(small_scene):
     from matplotlib.figure import Figure
 
-    from workflow.data.states import CONTRACTION, FORCE, PRESSURE, states
+    from workflow.data.scene_data import CONTRACTION, FORCE, PRESSURE, states
 
     table = states(small_scene(), ["force"])
     table = table.assign(status="not_solved", **{FORCE: np.nan})

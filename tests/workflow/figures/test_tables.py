@@ -7,7 +7,7 @@ import pytest
 
 from solver.status import StateStatus
 from workflow.data.principal_stress import principal_of_four
-from workflow.data.states import COLUMN, CONTRACTION, FORCE, PRESSURE, WALL
+from workflow.data.scene_data import COLUMN, CONTRACTION, FORCE, PRESSURE, WALL
 from workflow.data.stress import LARGEST, SMALLEST, along_meridian, wall
 from workflow.figures.labels import SERIES
 from workflow.study.errors import StudyError
