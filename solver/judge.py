@@ -10,7 +10,7 @@ from solver.case import Case
 from solver.load_path import CONTRACTION_LIMITS, PathKind
 from solver.models import MODELS
 from solver.record import Solution
-from solver.status import CaseStatus, StateStatus, case_status, state_status
+from solver.status import VALID, CaseStatus, StateStatus, case_status, state_status
 
 LIMITS = ("fold", "asymptote", "crumpling", "overhang")  # kinds of limit that a reason begins with
 LOST = "reached through a state that is turned inside out, or across a snap of the muscle"
@@ -40,9 +40,8 @@ def judged(
     """
     count = len(case.path.stops)
     each = state_status(case.path.kind, states)
-    valid = StateStatus.CONVERGED, StateStatus.UNSTABLE
-    lost = {k for k in lost if each[k] in valid}
-    far = {k for k in _too_far(case, states) if each[k] in valid}
+    lost = {k for k in lost if each[k] in VALID}
+    far = {k for k in _too_far(case, states) if each[k] in VALID}
     for k in lost | far:
         each[k] = StateStatus.INVALID_STATE
     zero_ended = ""  # why the search for zero force ended, where all stops were reached
@@ -66,7 +65,7 @@ def judged(
     if case.path.zero_force:
         each[-1], note = zero_force.judge(case, states, each[-1], searched)
         notes[-1] = zero_ended or note or notes[-1]
-        if each[-1] in valid and _among_invalid(case, states, each):
+        if each[-1] in VALID and _among_invalid(case, states, each):
             each[-1], notes[-1] = StateStatus.INVALID_STATE, LOST
     return Solution(
         status=status,

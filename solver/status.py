@@ -19,6 +19,9 @@ class StateStatus(StrEnum):
     NOT_ASKED = "not_asked"  # of no record: in a table of all, where nobody asked for a state
 
 
+VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)  # whose numbers are those of the muscle
+
+
 class Flag(StrEnum):
     """What a user should know of a state beside its status; several may hold."""
 

@@ -10,9 +10,8 @@ from scipy.optimize import brentq
 
 from solver.case import Case
 from solver.record import Solution
-from solver.status import StateStatus
+from solver.status import VALID
 
-VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 SAME = 1e-9  # two contractions this close are one
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from solver.case import Case
 from solver.load_path import CONTRACTION_LIMITS, LoadPath, PathKind
 from solver.models import MODELS
 from solver.record import Solution
-from solver.status import StateStatus
+from solver.status import VALID
 from workflow.answers import words
 from workflow.answers.quantities import CONTRACTION, FORCE, KINDS, PRESSURE, UNIT, read
 from workflow.answers.quick import Quick
@@ -34,7 +34,6 @@ MODEL = "membrane"  # where neither a model nor a tolerance is asked for
 ROUNDS, NEAR = 10, 5e-7  # solves for a pressure, and its last change [MPa]
 TRIED = (0.1, 0.2, 0.4, 0.7, 1.0, 2.0, 4.0)  # MPa, in search of the largest contraction
 DIGITS = 10  # of a contraction or pressure that is computed, not written
-VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 GUESS = "its error is a guess: models have not been compared on a muscle like this one"
 
 

@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from solver.load_path import PathKind
 from solver.record import SLEEVED, VARIABLES
-from solver.status import StateStatus
+from solver.status import VALID, StateStatus
 from workflow.data.records import Curve, SolvedCase
 from workflow.plan import mesh_error
 from workflow.study.contents import StudiedMuscle
 
 STOP, ZERO = "stop", "zero force"  # kinds of states
 GOOD = StateStatus.CONVERGED.value
-SHOWN = (GOOD, StateStatus.UNSTABLE.value)  # statuses whose numbers may be shown
+SHOWN = tuple(status.value for status in VALID)  # statuses whose numbers may be shown
 CONTROLS = {  # that a path prescribes; of a state at a stop the decimals of the study file
     "contraction": VARIABLES["contraction"],
     "pressure": VARIABLES["pressure"],

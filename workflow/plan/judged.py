@@ -17,14 +17,13 @@ from solver.case import Case
 from solver.load_path import ZERO_FORCE
 from solver.models import MODELS
 from solver.record import Solution
-from solver.status import Flag, StateStatus
+from solver.status import VALID, Flag
 from workflow.study.judged_quantities import VARIABLES
 
 Array = NDArray[np.float64]
 FOLLOWS, ZERO = "follows", "zero_force"
 QUANTITIES = VARIABLES
 AT_ZERO = 1e-6  # of the largest control of a path: as good as none
-VALID = (StateStatus.CONVERGED, StateStatus.UNSTABLE)
 
 
 def of_scene(quantities: Iterable[str]) -> tuple[str, ...]:

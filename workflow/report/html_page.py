@@ -14,6 +14,7 @@ import pandas as pd
 
 from geometry.files import atomic_write
 from geometry.readable import plain
+from workflow.report.tables import read
 
 ANALYSES = Path(__file__).parents[1] / "analyses"
 DATA = ("workflow/analyses/*/readers.py", "workflow/analyses/*/__init__.py")
@@ -41,7 +42,7 @@ def write(
     parts = [f"<p>{html.escape(caption.read_text(encoding='utf-8').strip())}</p>"]
     parts += [picture(path) for path in pictures]
     for path in tables:
-        rows = pd.read_csv(path, keep_default_na=False, na_values=[""])
+        rows = read(path)
         shown = for_readers(path.stem, rows, output.stem)
         if shown is not None:
             parts.append(table(shown, path.stem))

@@ -19,7 +19,7 @@ from workflow.analyses.claims.claim import Verdict
 from workflow.analyses.registry import ANALYSES
 from workflow.data import deviation
 from workflow.plan.plan import Plan
-from workflow.report import html_page
+from workflow.report import html_page, tables
 from workflow.report.pages import Page
 
 DEFAULT_MESH = "1/1"  # as the analysis of accuracy calls it
@@ -165,7 +165,7 @@ def _table(results: Path, name: str) -> pd.DataFrame | None:
     path = results / f"tables/{name}.csv"
     if not path.is_file():
         return None
-    return pd.read_csv(path, keep_default_na=False, na_values=[""])
+    return tables.read(path)
 
 
 def _named(name: str, fitting: Sequence[Analysis]) -> Analysis | None:

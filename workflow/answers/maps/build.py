@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from solver.load_path import LoadPath, PathKind
 from solver.record import Solution
-from solver.status import StateStatus
-from workflow.answers.curve import VALID
+from solver.status import VALID, StateStatus
 from workflow.answers.maps.table import FORCE, PARTS, VOLUME, Map
 from workflow.answers.store import Store
 from workflow.plan import model_choice

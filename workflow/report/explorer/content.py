@@ -24,6 +24,7 @@ from workflow.data.principal_stress import principal_of_four
 from workflow.data.records import Curve
 from workflow.data.reference import SAME, ForceMap
 from workflow.data.states import CONTROLS, OF_MUSCLE, OF_STATE, WITH_ERROR, Table, of_muscle
+from workflow.report.tables import read as read_table
 from workflow.study.contents import StudiedMuscle
 from workflow.study.errors import StudyError
 from workflow.study.schema import QUANTITIES, SHEET
@@ -316,7 +317,7 @@ def _rows(file: Path, columns: Sequence[str]) -> list[dict[str, Any]]:
     """Some columns of a table, or nothing where it has not been made."""
     if not file.exists():
         return []
-    rows = pd.read_csv(file, keep_default_na=False, na_values=[""])
+    rows = read_table(file)
     return [
         {name: _plain(row[name]) for name in columns if name in row}
         for row in rows.to_dict("records")

@@ -32,6 +32,7 @@ import numpy as np
 import pandas as pd
 
 from solver.sources import ROOT
+from workflow.report import tables
 
 FOLDER = ROOT / "docs/numbers"
 GIVEN = FOLDER / "given.csv"  # value, unit, reference
@@ -188,7 +189,7 @@ def table(file: str) -> pd.DataFrame:
     path = FOLDER / file
     if not path.is_file():
         raise ValueError(f"there is no docs/numbers/{file}")
-    return pd.read_csv(path, comment="#", keep_default_na=False, na_values=[""])
+    return tables.read(path, comment="#")
 
 
 def is_input(number: Number) -> bool:
@@ -235,7 +236,7 @@ def outdated(results: Path, share: float = 1e-6) -> list[str]:
     """Tables of docs/numbers that are not those of a run."""
     found = []
     for path, made in copied(results):
-        ours, theirs = table(path.name), pd.read_csv(made, keep_default_na=False, na_values=[""])
+        ours, theirs = table(path.name), tables.read(made)
         try:
             pd.testing.assert_frame_equal(ours, theirs, rtol=share, atol=1e-9, check_dtype=False)
         except AssertionError:
