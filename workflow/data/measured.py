@@ -157,10 +157,26 @@ def read(path: Path, words: tuple[Word, ...]) -> Table:
     comments = [(n, _uncommented(line)) for n, line in written if _is_comment(line)]
     above = [(n, cells) for n, cells in split[:first]]
     found, how_named = _columns(name, above, comments, separator, words, split[first])
-    rows, numbers, text_lines = [], [], []
-    width = max(place for place, _ in found) + 1
+    rows, numbers, text_lines = _rows(name, split[first:], max(place for place, _ in found) + 1)
     heads = [header.text.strip() for _, header in found]
-    for n, cells in split[first:]:
+    columns = _of_quantities(name, found)
+    decimal = _decimal(name, rows, numbers, separator)
+    used = {column.place for column in columns.values()}
+    unused = tuple(h for (place, _), h in zip(found, heads, strict=True) if place not in used and h)
+    how = f"{SEPARATORS[separator]}, decimal {SIGNS[decimal]}, {how_named}"
+    if split is not lines_of_file:
+        how += "; forces in a column for each pressure or contraction"
+    if text_lines:
+        how += f"; lines of words between the numbers: {listed(text_lines)}"
+    return Table(path, rows, numbers, decimal, columns, unused, how)
+
+
+def _rows(
+    name: str, lines: Sequence[tuple[int, Cells]], width: int
+) -> tuple[list[Cells], list[int], list[int]]:
+    """Cells of the rows of numbers, the lines they stand in, and lines of words between them."""
+    rows, numbers, text_lines = [], [], []
+    for n, cells in lines:
         if not any(_is_number(cell) for cell in cells):
             text_lines.append(n)  # a header again, or words between the rows
             continue
@@ -171,26 +187,14 @@ def read(path: Path, words: tuple[Word, ...]) -> Table:
             )
         rows.append(cells)
         numbers.append(n)
-    columns = _of_quantities(name, found)
-    decimal = _decimal(name, rows, numbers, separator)
-    used = {column.place for column in columns.values()}
-    unused = tuple(h for (place, _), h in zip(found, heads, strict=True) if place not in used and h)
-    how = f"{SEPARATORS[separator]}, decimal {SIGNS[decimal]}, {how_named}"
-    if split is not lines_of_file:
-        how += "; forces in a column for each pressure or contraction"
-    if text_lines:
-        how += f"; lines of words between the numbers: {_listed(text_lines)}"
-    return Table(path, rows, numbers, decimal, columns, unused, how)
-
-
-def _listed(lines: Sequence[int]) -> str:
-    more = f" and {len(lines) - SHOWN_LINES} more" if len(lines) > SHOWN_LINES else ""
-    return ", ".join(map(str, lines[:SHOWN_LINES])) + more
+    return rows, numbers, text_lines
 
 
 def listed(lines: Iterable[int]) -> str:
     """Some line numbers, the first few."""
-    return _listed(list(lines))
+    every = list(lines)
+    more = f" and {len(every) - SHOWN_LINES} more" if len(every) > SHOWN_LINES else ""
+    return ", ".join(map(str, every[:SHOWN_LINES])) + more
 
 
 # --- text --------------------------------------------------------------------------------------

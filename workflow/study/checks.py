@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from geometry.braid import Braid, Kind
-from geometry.muscle import AnyBraid, Muscle
+from geometry.muscle import Muscle
 from geometry.refusal import Refusal
 from solver import net
 from solver.case import DYNAMIC
@@ -331,12 +331,7 @@ def proportions(tube: Muscle) -> Iterator[tuple[str, str]]:
             yield blamed, f"{key} / inner_diameter from {low:g} to {high:g}; here {share:.3g}"
 
 
-def angle(braid: AnyBraid) -> Iterator[str]:
-    """What is allowed in place of an angle at which threads are no braid."""
-    yield from wound_angle(braid.angle)
-
-
-def wound_angle(radians: float) -> Iterator[str]:
+def angle(radians: float) -> Iterator[str]:
     """What is allowed in place of an angle of threads at which they are no braid."""
     low, high = ANGLES
     degrees = math.degrees(radians)

@@ -93,7 +93,7 @@ def resolved(
         thread_diameter=width,
         crimp=crimp,
     )
-    for allowed in checks.wound_angle(math.atan(made.layer().tangent)):
+    for allowed in checks.angle(math.atan(made.layer().tangent)):
         said = own if any(key in own for key in ANGLES) else common
         key = next(key for key in ANGLES if key in said)
         raise refuse(number, key, said[key], allowed)

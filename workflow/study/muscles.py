@@ -298,7 +298,7 @@ class Muscles:
                 raise self._refuse(name, "angle_of", values["angle_of"], "a muscle with a braid")
             last = _lead_at_angle_of(other, diameters)
         braid = self._checked(name, build, common | last, {}, renamed)
-        for allowed in checks.angle(braid):
+        for allowed in checks.angle(braid.angle):
             raise self._refuse(name, given[0], values[given[0]], allowed)
         return braid
 
