@@ -121,11 +121,11 @@ def calibration(table):
     gap = (table["values"] == "before") & (table["contraction"] == 0.1)
     table.loc[gap & (table["pressure"] == 0.2) & (table["calibration"] == "two"), "force"] = np.nan
     return [
-        "one after solid at 0.6 MPa",
-        "two reference at 0.6 MPa",
-        "two before membrane at 0.2 MPa (1 of 5)",
+        "one after by solid at 0.6 MPa",
+        "Not measured: two at 0.6 MPa",
+        "two before by membrane at 0.2 MPa (1 of 5 states)",
         "after, by the solid",
-        "one measured at 0.2 MPa (1 of 5)",
+        "one measured at 0.2 MPa (1 of 5 points)",
         "not fitted",
     ]
 

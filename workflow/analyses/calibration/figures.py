@@ -64,7 +64,8 @@ def overview(states: pd.DataFrame) -> Figure:
     for ax in axes[-1]:
         ax.set_xlabel("contraction [%]")
     legend(figure, labelled(axes))
-    curves.note(figure, undrawn.sentence(_missing(states)))
+    said = undrawn.sentence(_lost(states), "Without a valid state")
+    curves.note(figure, f"{said} {undrawn.sentence(_unmeasured(states), 'Not measured')}".strip())
     return figure
 
 
@@ -96,16 +97,20 @@ def residuals(points: pd.DataFrame) -> Figure:
     legend(figure, grey, ends)
     lost = points.assign(what="measured at", unit=np.where(points["held"] == "isobaric", "MPa", ""))
     by = ["calibration", "what", "set_at", "unit"]
-    curves.note(figure, undrawn.sentence(undrawn.without_value(lost, "residual", by)))
+    curves.note(figure, undrawn.sentence(undrawn.without_value(lost, "residual", by, "points")))
     return figure
 
 
-def _missing(states: pd.DataFrame) -> list[str]:
-    """Forces that no model, or no measurement, has."""
-    by = ["calibration", "values", "model", "unit", "pressure", "mpa"]
-    found = undrawn.without_value(states.assign(unit="at", mpa="MPa"), "force", by)
+def _lost(states: pd.DataFrame) -> list[str]:
+    """Forces that a model has not."""
+    by = ["calibration", "values", "by", "model", "unit", "pressure", "mpa"]
+    named = states.assign(by="by", unit="at", mpa="MPa")
+    return undrawn.without_value(named, "force", by, "states")
+
+
+def _unmeasured(states: pd.DataFrame) -> list[str]:
+    """Forces that the measurement has not."""
     first = states.drop_duplicates(["calibration", "pressure", "contraction"])
-    named = first.assign(what="reference at", mpa="MPa")
-    return found + undrawn.without_value(
-        named, "reference", ["calibration", "what", "pressure", "mpa"]
-    )
+    by = ["calibration", "unit", "pressure", "mpa"]
+    named = first.assign(unit="at", mpa="MPa")
+    return undrawn.without_value(named, "reference", by, "contractions")

@@ -1,6 +1,8 @@
 """A calibrated muscle as text to paste into a study file, or why there is none."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import pandas as pd
 
@@ -43,10 +45,19 @@ def text(study: Study, name: str, values: Mapping[str, float]) -> str:
         lines.append("materials:")
         law = "" if base.rubber.unnamed else f"law: {base.rubber.law()}, "
         found = base.rubber.values() | fitted | {"kappa": base.rubber.kappa}
-        said = ", ".join(f"{key}: {value:g}" for key, value in found.items())
+        said = ", ".join(
+            [f"{key}: {value:g}" for key, value in found.items()]
+            + [f"{key}: {json.dumps(value)}" for key, value in _kept(study, base.material)]
+        )
         lines.append(f"  {name}: {{{law}{said}}}")
     lines += ["muscles:", f"  {name}: {{{own}}}"]
     return "\n".join(lines) + "\n"
+
+
+def _kept(study: Study, material: str) -> Iterator[tuple[str, Any]]:
+    """What else the entry of a rubber says; not ``fitted_range``, which was of its first law."""
+    given = study.source.plain["materials"][material]
+    return ((key, given[key]) for key in ("stretch_limit", "density", "memory") if key in given)
 
 
 def no_muscle(study: Study, name: str, rows: pd.DataFrame) -> str:

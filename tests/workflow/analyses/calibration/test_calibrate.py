@@ -95,6 +95,20 @@ def test_rubber_is_fitted_too_and_the_entry_is_a_muscle(study, forces_of):
     assert pasted.muscle == given.muscles["one"].muscle
 
 
+def test_the_entry_of_a_fitted_rubber_has_what_else_is_known_of_it(study):
+    more = "stretch_limit: 4, density: 1.1, memory: {per_decade: 0.05, from: 1.0e-3, to: 100}"
+    text = STUDY.replace("c01: 0.083805", f"c01: 0.083805, fitted_range: [0.8, 3], {more}")
+    fitting = FIT.replace("muscle: one,", "muscle: one, fit: [c10],")
+    written = files.text(study(fitting, text=text), "mine", {"c10": 0.3}).splitlines()
+    entry = written[written.index("materials:") + 1]
+    assert "fitted_range" not in entry  # of the law that was replaced
+    pasted = study(calibration="", text=text.replace("materials:\n", f"materials:\n{entry}\n"))
+    assert pasted.source.plain["materials"]["mine"] == {
+        **{"c10": 0.3, "c01": 0.083805, "kappa": 1000, "stretch_limit": 4, "density": 1.1},
+        "memory": {"per_decade": 0.05, "from": 1e-3, "to": 100},
+    }
+
+
 def test_a_value_beyond_what_fits_between_the_layers_is_said(study):
     braid = Braid(lead=144, threads=60, layer_diameters=(20.6, 21.8))
     assert thickest(braid) == pytest.approx(2100 * np.pi * 0.6**2 / 4)
