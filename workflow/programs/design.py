@@ -25,8 +25,8 @@ def run(given: argparse.Namespace) -> int:
     folder = given.folder or results_of(given) / "design"
     for name in names:
         results = result.designed(study, name)
-        for found in results:
-            print("\n".join(result.report(found)))
+        for own, found in zip(result.names(name, results), results, strict=True):
+            print("\n".join(result.report(found, own)))
         output = folder / f"{name}.yaml"
         result.write(study, name, results, output)
         html_page.write_beside(output, f"Design {name}", "design")

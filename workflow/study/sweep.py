@@ -136,7 +136,8 @@ class _Spread:
         try:
             rows = _rows(table)
         except StudyError as said:
-            raise StudyError(f"{said}{user_file.sought(study, table)}", said.line) from None
+            by = f"\n  named by {self._source.place(('muscles', name, 'table'))}"
+            raise StudyError(f"{said}{user_file.sought(study, table)}{by}", said.line) from None
         for line, row in rows:
             new = row.pop(NAMES, None)
             place = f"{printable(table)}:{line}"

@@ -140,7 +140,7 @@ def test_what_stands_in_the_way_is_named(study):
     assert [r.name for r in found.missed[0].requirements] == ["pull"]
     assert found.missed[0].worst == pytest.approx(0.224, abs=0.01)
     result.write(study, "contrary", [found], Path("results/design/contrary.yaml"))
-    said = "\n".join(result.report(found))
+    said = "\n".join(result.report(found, "contrary"))
     assert "no muscle meets all requirements" in said
     assert "without pull (force at 10 %, 0.3 MPa: at least 900 N" in said
     assert "muscles:" not in result.texts("contrary", [found])
@@ -158,7 +158,7 @@ def test_objectives_that_agree_have_one_muscle(tmp_path, monkeypatch):
     monkeypatch.setattr(result, "looked_for", looked_for)
     found = result.designed(load(tmp_path / "study.yaml"), "small")
     assert len(found) == 1
-    assert "nothing to trade" in "\n".join(result.report(found[0]))
+    assert "nothing to trade" in "\n".join(result.report(found[0], "both"))
 
 
 TRADE = """
@@ -188,7 +188,14 @@ def test_a_trade_off_has_muscles_between_its_ends(tmp_path, monkeypatch):
     assert (np.diff(air) > 0).all()
     steps = np.diff(-force) / (force[0] - force[-1])
     assert steps == pytest.approx(0.25, abs=5e-3)
-    assert "trade-off: force at 10 %: at least" in "\n".join(result.report(found[2]))
+    assert "trade-off: force at 10 %: at least" in "\n".join(result.report(found[2], "c"))
+    said = result.texts("trade", found)
+    assert [line.split(":")[0] for line in said.splitlines() if "states by" in line] == [
+        f"# trade_{k}" for k in range(1, 6)
+    ]
+    assert yaml.safe_load(said)["muscles"].keys() == {f"trade_{k}" for k in range(1, 6)}
+    chosen = result.table(found).query("name == 'chosen'").set_index("what")
+    assert chosen["unit"].to_dict() == {"inner_diameter": "mm", "material": ""}
     assert found[-1].bound.limit == pytest.approx(force.min(), rel=5e-3)  # an end is refined too
     lines = [f"{each.problem.values(each.best.x)}" for each in found]
     assert len(set(lines)) == 5

@@ -382,8 +382,11 @@ def test_files_are_those_beside_the_study_or_where_the_run_starts(elsewhere, the
 
 
 def test_a_file_that_is_nowhere_says_where_it_was_looked_for(elsewhere):
-    with pytest.raises(StudyError, match=r"many\.csv: cannot be read.*\n.*bench, beside the study"):
+    with pytest.raises(
+        StudyError, match=r"many\.csv: cannot be read.*\n.*bench, beside the study"
+    ) as it:
         load(elsewhere)
+    assert str(it.value).endswith("named by bench/study.yaml:14: muscles.many.table")
     Path("many.csv").write_text("name,length\nshort,200\n")
     said = [str(error) for error in bench.refused(load(elsewhere))]
     assert len(said) == 2

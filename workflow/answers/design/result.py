@@ -27,6 +27,7 @@ from workflow.study.contents import Study
 ACTIVE = 2e-3  # share of its limit within which a requirement decides the muscle
 END = 2 * MISSED  # share by which the end of a trade-off may be off the best by one objective
 SHARES = (0.25, 0.5, 0.75)  # of the way from one end of a trade-off to the other
+UNITS = {"inner_diameter": "mm", "wall_thickness": "mm", "length": "mm", "angle": "degree"}
 
 
 def designed(study: Study, name: str) -> list[Found]:
@@ -104,27 +105,31 @@ def entry(problem: Problem, best: Trial, name: str) -> str:
 def texts(name: str, results: Sequence[Found]) -> str:
     """The file to paste from; says why where there is nothing to paste."""
     problem = results[0].problem
-    lines = [f"# {line}".rstrip() for found in results for line in report(found)]
-    best = [found.best for found in results if found.best is not None]
-    if not best:
+    named = list(zip(names(name, results), results, strict=True))
+    lines = [f"# {line}".rstrip() for own, found in named for line in report(found, own)]
+    entries = [entry(problem, found.best, own) for own, found in named if found.best is not None]
+    if not entries:
         return "\n".join([*lines, ""])
     lines.append("# Paste the lines below `muscles:` under the same heading of the study file.")
-    names = [name] if len(best) == 1 else [f"{name}_{k}" for k in range(1, len(best) + 1)]
-    entries = [entry(problem, each, own) for own, each in zip(names, best, strict=True)]
     return "\n".join([*lines, "muscles:", *entries, ""])
 
 
-def report(found: Found) -> list[str]:
-    """A result in lines."""
+def names(name: str, results: Sequence[Found]) -> list[str]:
+    """Of the muscles of a design: of a trade-off they are numbered."""
+    return [name] if len(results) == 1 else [f"{name}_{k}" for k in range(1, len(results) + 1)]
+
+
+def report(found: Found, name: str) -> list[str]:
+    """A result in lines, as the muscle of a name."""
     problem, best = found.problem, found.best
     cost = f"{found.states} states by the cylinder, {found.solves} curves by the {TRUTH}"
     if best is None:
-        lines = [f"{problem.name}: no muscle meets all requirements ({cost})"]
+        lines = [f"{name}: no muscle meets all requirements ({cost})"]
         return lines + _why(found)
     values = ", ".join(f"{k} {v:g}" if isinstance(v, float) else f"{k} {v}" for k, v in (
         problem.values(best.x).items()
     ))  # fmt: skip
-    lines = [f"{problem.name}: {values} ({cost})"]
+    lines = [f"{name}: {values} ({cost})"]
     lines += [
         f"  {problem.text_of(measure, best.measures[measure])}" for measure in problem.objectives
     ]
@@ -227,7 +232,8 @@ def table(results: Sequence[Found]) -> pd.DataFrame:
     ]  # fmt: skip
     rows += [{"name": "objective", "what": problem.text_of(m, 0.0).split(":")[0], "limit": "",
               "unit": problem.text_of(m, 0.0).split()[-1]} for m in problem.objectives]  # fmt: skip
-    rows += [{"name": "chosen", "what": key, "limit": "", "unit": ""} for key in _keys(problem)]
+    rows += [{"name": "chosen", "what": key, "limit": "", "unit": UNITS.get(key, "")}
+             for key in _keys(problem)]  # fmt: skip
     measures = [r.measure for r in problem.requirements] + problem.objectives
     for number, found in enumerate(results, 1):
         best = found.best
