@@ -6,7 +6,7 @@ proved exact enough
 - by like muscles, if ``CONFIDENT`` of them are; it must then have every state of the curve,
 - by a better rung on this curve, at all states or at a few telling ones: the difference of the two
   and what the better one may itself be off are within the tolerance,
-- or, of a mesh, by a coarser one on this curve.
+- or, of a mesh, by a coarser one on this curve, where no better one says it.
 
 Like muscles say nothing of a tube that a mesh shows to be folded. Where no rung is proved it
 climbs, but not to a finer mesh where coarser ones have lost states, or where the tube is folded:
@@ -206,10 +206,10 @@ class _Climb:
                 return Verdict(inf, 0.0, "no state is valid")
             if lost := self._lost(name):
                 return Verdict(inf, 0.0, f"{lost} states are lost, not valid or smoothed")
-        found = [v for better in self._above(name) if (v := self._measured(name, better))]
-        found += [v] if (v := self._by_coarser(name)) else []
-        found += [v] if (v := self._by_both(name)) else []
-        if found:
+        by_better = [v for better in self._above(name) if (v := self._measured(name, better))]
+        by_others = [v for v in (self._by_both(name), self._by_coarser(name)) if v]
+        sure = [v for v in by_better if isfinite(v.error)]  # two meshes may agree and be wrong
+        if found := sure or by_others or by_better:
             return min(found, key=lambda v: _worse(v.error))
         known = self._guess(name)
         if known is None:

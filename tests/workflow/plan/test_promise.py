@@ -305,6 +305,17 @@ def test_a_coarser_mesh_that_has_lost_states_says_nothing_of_a_finer_one(meshes,
     assert (end.rung, end.holds, end.by) == ("solid", True, "estimated from 99 like muscles")
 
 
+def test_two_meshes_that_agree_are_wrong_where_a_finer_one_says_so(meshes, monkeypatch):
+    guessed(monkeypatch)
+    solver = Solver(meshes, solid_finer=0.02)
+    for name in ("solid, coarser", "solid", "solid, finer"):
+        solver(meshes[name])
+    end = kept(meshes, solver, 0.005)
+    assert not end.holds
+    assert end.verdicts["solid"].by == "measured here by solid, finer at all states"
+    assert end.verdicts["solid"].error == pytest.approx(1.5 * 0.02, rel=0.03)
+
+
 @pytest.mark.parametrize("lost", ["solid, coarser", "solid"])
 def test_a_mesh_that_has_lost_states_is_not_refined(meshes, monkeypatch, lost):
     """Even where like muscles would prove a finer one: it mostly loses states as well."""
