@@ -143,7 +143,7 @@ def read(path: Path, words: tuple[Word, ...]) -> Table:
     plain = [(n, line) for n, line in plain if not re.fullmatch(r"(?i)sep=.", line.strip())]
     separator = _separator([line for _, line in plain])
     if separator is None:
-        raise StudyError(f"{name}: there is no force in it: no line has two numbers")
+        raise StudyError(f"{name}: nothing measured is in it: no line has two numbers")
     split = [(n, _cells(line, separator)) for n, line in plain]
     lines_of_file = split
     if words is headers.OF_MUSCLES:
@@ -153,7 +153,9 @@ def read(path: Path, words: tuple[Word, ...]) -> Table:
     )
     first = next(rows_of_numbers, None)
     if first is None:
-        raise StudyError(f"{name}: there is no force in it: no line below the headers has numbers")
+        raise StudyError(
+            f"{name}: nothing measured is in it: no line below the headers has numbers"
+        )
     comments = [(n, _uncommented(line)) for n, line in written if _is_comment(line)]
     above = [(n, cells) for n, cells in split[:first]]
     found, how_named = _columns(name, above, comments, separator, words, split[first])

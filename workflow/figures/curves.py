@@ -5,6 +5,7 @@ ones are marked. What is not drawn (invalid, not reached, without a value, not p
 logarithmic axis) is named in a note under the axes.
 """
 
+import re
 import textwrap
 from collections.abc import Iterator
 from typing import Any
@@ -52,6 +53,7 @@ MEANING = {
     Flag.SMOOTHED: "the smoothing of slack threads carries a share of the force",
 }
 NO_VALUE, NO_STRESS, NOT_POSITIVE = "no_value", "no_stress", "not_positive"
+UNIT = re.compile(r"(?<=\d) (?=%|MPa|mm|N\b)")  # the blank between a number and its unit
 WORDS = {  # what is said of states that are not drawn: of one, of several
     StateStatus.INVALID_STATE.value: ("invalid state", "invalid states"),
     StateStatus.NO_ROOT.value: ("no root: the force has no zero", "no roots"),
@@ -341,7 +343,11 @@ def note(figure: Figure, text: str) -> None:
     if not text:
         return
     width = figure.get_size_inches()[0]
-    lines = textwrap.wrap(text, int(width * CHARACTERS))
+    whole = UNIT.sub("\N{NO-BREAK SPACE}", text)
+    lines = [
+        line.replace("\N{NO-BREAK SPACE}", " ")
+        for line in textwrap.wrap(whole, int(width * CHARACTERS))
+    ]
     grow(figure, bottom=NOTE_LINE * (len(lines) + 1))
     corner = 0.1 / width, 0.06 / figure.get_size_inches()[1]
     figure.text(*corner, "\n".join(lines), color=SOFT, fontsize=7, va="bottom")

@@ -144,6 +144,7 @@ WRONG = {
     "sign": ("ut.csv", "strain,stress_MPa\n0.1,-0.1\n0.5,-0.3\n", "sign is the other"),
     "test": ("mine.csv", "strain,stress_MPa\n0.1,0.1\n0.5,0.3\n", "of which test"),
     "tests": ("mine.csv", "strain,stress_MPa,test\n0.1,0.1,torsion\n", "no test 'torsion'"),
+    "empty": ("ut.csv", "", "nothing measured is in it"),
     "no stress": ("ut.csv", "strain,area\n0.1,0.1\n", "column stress is missing"),
     "no strain": ("ut.csv", "stress_MPa,area\n0.1,0.1\n", "column stretch or strain is missing"),
 }

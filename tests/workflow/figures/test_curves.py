@@ -104,6 +104,17 @@ def test_a_band_is_spoken_of_where_it_is_wider_than_its_line(share, said, small_
     assert len(ax.collections) == said
 
 
+def test_no_line_of_a_note_parts_a_number_from_its_unit():
+    for filled in range(30):
+        figure = Figure(figsize=(2, 2))
+        curves.note(figure, f"{'x' * filled} 6 % to 20 % and 0.25 MPa, 12 mm, 30 N; 7 states")
+        (text,) = figure.texts
+        lines = text.get_text().split("\n")
+        assert len(lines) > 1
+        assert not any(line.startswith(("%", "MPa", "mm", "N;")) for line in lines)
+        assert "\N{NO-BREAK SPACE}" not in text.get_text()
+
+
 def test_no_note_without_gaps(small_scene):
     figure = Figure(figsize=(7, 3))
     table = states(small_scene(), ["force"])
