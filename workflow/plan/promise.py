@@ -206,11 +206,8 @@ class _Climb:
                 return Verdict(inf, 0.0, "no state is valid")
             if lost := self._lost(name):
                 return Verdict(inf, 0.0, f"{lost} states are lost, not valid or smoothed")
-        by_better = [v for better in self._above(name) if (v := self._measured(name, better))]
-        by_others = [v for v in (self._by_both(name), self._by_coarser(name)) if v]
-        sure = [v for v in by_better if isfinite(v.error)]  # two meshes may agree and be wrong
-        if found := sure or by_others or by_better:
-            return min(found, key=lambda v: _worse(v.error))
+        if here := self._here(name):
+            return here
         known = self._guess(name)
         if known is None:
             return Verdict(nan, 0.0, "not known")
@@ -218,6 +215,15 @@ class _Climb:
             return Verdict(nan, 0.0, "not known, as the tube is folded")
         by = f"estimated from {known.count} like muscles"
         return Verdict(known.high, known.chance(self.asked.tolerance), by)
+
+    def _here(self, name: str) -> Verdict | None:
+        """By other rungs on this curve: by better ones, else by coarser meshes; None if by none."""
+        better = self._above(name)[::-1]
+        by_better = [v for each in better if (v := self._measured(name, each))]
+        by_coarser = [v for v in (self._by_both(name), self._by_coarser(name)) if v]
+        sure = [v for v in by_better if isfinite(v.error)]  # two meshes may agree and be wrong
+        found = sure or by_coarser or by_better
+        return min(found, key=lambda v: _worse(v.error)) if found else None
 
     def _guess(self, name: str) -> Guess | None:
         """By like muscles: those that are pushed too, or not, once that is known."""
@@ -289,9 +295,9 @@ class _Climb:
         return Verdict(error, float(error <= self.asked.tolerance), by)
 
     def _own_error(self, name: str) -> float:
-        """What a rung may itself be off: by a coarser mesh, by like muscles; else infinite."""
-        if measured := self._by_coarser(name):
-            return measured.error
+        """What a rung may itself be off: by others here, by like muscles; else infinite."""
+        if here := self._here(name):
+            return here.error
         known = self._guess(name)
         return inf if known is None or self._is_folded(name) else known.high
 

@@ -313,7 +313,7 @@ def test_two_meshes_that_agree_are_wrong_where_a_finer_one_says_so(meshes, monke
     end = kept(meshes, solver, 0.005)
     assert not end.holds
     assert end.verdicts["solid"].by == "measured here by solid, finer at all states"
-    assert end.verdicts["solid"].error == pytest.approx(1.5 * 0.02, rel=0.03)
+    assert end.verdicts["solid"].error == pytest.approx(1.5 * 0.02)
 
 
 @pytest.mark.parametrize("lost", ["solid, coarser", "solid"])
