@@ -7,7 +7,8 @@
     mesh does to the force (workflow/plan/mesh_error.py), and so for other quantities;
     status: of the state (solver/status.py), not_asked where nobody asked for one; flags and note
     beside it (words with spaces between; a sentence), mostly empty;
-    case, case_status, case_reason: of the curve (without the last dimension);
+    case, case_status, case_reason: of the curve (without the last dimension); tolerance that a
+    scene wants of it, total_error of model and mesh, and how that is known;
     threshold_pressure (isometric), free_contraction (isobaric), each with its _status, _flags
     and _note: of the state of zero force, for curves that ask for it.
     Along muscle: what the muscle is made of. Coordinates are the decimals of the study file.
@@ -33,7 +34,14 @@ EMPTY = {  # where no state is
     "note": "",
     "error_by": "",
 }
-NO_CURVE = {"case": "", "case_status": CaseStatus.NOT_ASKED.value, "case_reason": ""}
+NO_CURVE: dict[str, str | float] = {
+    "case": "",
+    "case_status": CaseStatus.NOT_ASKED.value,
+    "case_reason": "",
+    "tolerance": np.nan,
+    "total_error": np.nan,
+    "total_error_by": "",
+}
 NO_VARIABLES = {"state", "point", "load", *EMPTY}  # of the columns of a state
 
 
@@ -100,9 +108,9 @@ class Group:
         for name, empty in EMPTY.items():
             texts = _spread(self.shape, stops, self.states[name], empty)
             data[name] = (dims, texts, attributes(OF_STATE[name]))
-        for name, empty in NO_CURVE.items():
-            texts = _spread(self.shape[:-1], curves, self.curves[name], empty)
-            data[name] = (dims[:-1], texts, attributes(OF_CURVE[name]))
+        for name, none in NO_CURVE.items():
+            values = _spread(self.shape[:-1], curves, self.curves[name], none)
+            data[name] = (dims[:-1], values, attributes(OF_CURVE[name]))
         if len(self.zeros):
             variable, column = self.kind.zero_force, self.swept
             long_name = f"{column} of zero force"

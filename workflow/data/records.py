@@ -11,7 +11,7 @@ from solver.record import Solution
 from solver.status import CaseStatus, StateStatus
 from workflow.data import settled
 from workflow.data.strain import judged
-from workflow.plan.plan import Place, Plan
+from workflow.plan.plan import Kept, Place, Plan
 from workflow.plan.promise import Promise
 from workflow.study import folders
 from workflow.study.errors import StudyError
@@ -52,9 +52,10 @@ class SolvedCase:
 
 @dataclass(frozen=True)
 class Curve(SolvedCase):
-    """A solved case at one of its places."""
+    """A solved case at one of its places, and what a climb has promised of it."""
 
     place: Place
+    kept: Kept | None = None
 
     @property
     def key(self) -> str:
@@ -116,6 +117,7 @@ def _curve(
         judged(case, solution, limits),
         stops,
         place,
+        plan.kept.get(place),
         finer=finer[1] if finer else _tried(by, solution, folder),
         coarser=_tried(coarser, solution, folder),
     )

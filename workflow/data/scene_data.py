@@ -31,6 +31,8 @@ NUMBER = "state"  # column: number of the state in its record
 SUSPECT = "suspect"  # status of a point that is shown but not used
 FLAGS = "flags"  # column: what to know of a state beside its status, words of solver/status.py
 STRETCH = COLUMN["thread_stretch_max"]
+TOLERANCE, TOTAL_BY = "tolerance [1]", "total_error_by"
+PROMISED = {"tolerance": TOLERANCE, "total_error": "total_error [1]", TOTAL_BY: TOTAL_BY}
 STRENGTH = "thread_strength [N]"  # column: what a thread bears, NaN if that is not known
 
 
@@ -104,7 +106,8 @@ def states(data: SceneData, quantities: Iterable[str]) -> pd.DataFrame:
 
     Columns: source (model), muscle, variant, point (stop or zero force), the two prescribed
     controls with the exact numbers of the study, the quantities, the discretisation errors of some
-    of them, the largest thread stretch, status, flags, the strength of a thread.
+    of them, the largest thread stretch, what was promised of the curve if a scene has a tolerance,
+    status, flags, the strength of a thread.
     """
     table = numbered(data.scene, data.table, quantities).drop(columns=NUMBER)
     known = {name: made.limits.thread_strength for name, made in data.studied.items()}
@@ -128,6 +131,8 @@ def numbered(scene: Scene, table: Table, quantities: Iterable[str]) -> pd.DataFr
         if name in WITH_ERROR:
             columns[error_of(COLUMN[name])] = found[f"{name}_error"]
     columns[STRETCH] = found["thread_stretch_max"].where(shown)
+    if found["tolerance"].notna().any():
+        columns |= {column: found[name] for name, column in PROMISED.items()}
     return pd.DataFrame(columns | {name: found[name] for name in ("status", FLAGS, NUMBER)})
 
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 from workflow.plan.model_choice import RUNGS
-from workflow.plan.plan import WITHIN, Place, Plan, PlannedCase
+from workflow.plan.plan import NOT_PROVED, WITHIN, Kept, Place, Plan, PlannedCase
 from workflow.plan.promise import Promise
 from workflow.study.folders import PROMISES
 
@@ -37,12 +37,14 @@ def settled(plan: Plan) -> Plan:
     }
     taken = {place for asked in cases.values() for place in asked.places}
     meshes: dict[str, tuple[str, str]] = {}
+    kept: dict[Place, Kept] = {}
     for key, end in found.items():
         asked = plan.cases[key]
         assert asked.promise is not None
         case = asked.promise.rungs[end["rung"]]
         moved = {place: _moved(place, end["rung"], taken) for place in asked.places}
         taken |= set(moved.values())
+        kept |= dict.fromkeys(moved.values(), _kept(asked.promise, end))
         finer, coarser = _meshes_by(asked.promise, end)
         known = meshes.get(case.key, ("", ""))
         meshes[case.key] = finer or known[0], coarser or known[1]
@@ -56,7 +58,13 @@ def settled(plan: Plan) -> Plan:
         cases=dict(sorted(cases.items(), key=lambda entry: entry[1].places)),
         scenes={name: dict(sorted(places.items())) for name, places in scenes.items()},
         meshes_by={key: by for key, by in sorted(meshes.items()) if any(by)},
+        kept=kept,
     )
+
+
+def _kept(promise: Promise, end: Mapping[str, Any]) -> Kept:
+    by = end["by"] if end["holds"] else f"{NOT_PROVED}; {end['by']}"
+    return Kept(promise.tolerance, end["error"], by)
 
 
 def _meshes_by(promise: Promise, end: Mapping[str, Any]) -> tuple[str, str]:

@@ -19,6 +19,7 @@ from solver.record import SLEEVED, VARIABLES
 from solver.status import VALID, StateStatus
 from workflow.data.records import Curve, SolvedCase
 from workflow.plan import mesh_error
+from workflow.plan.plan import Kept
 from workflow.study.contents import StudiedMuscle
 
 STOP, ZERO = "stop", "zero force"  # kinds of states
@@ -60,6 +61,9 @@ OF_CURVE = {  # columns of a curve
     "case": ("", "case key"),
     "case_status": ("", "case status"),
     "case_reason": ("", "case reason"),
+    "tolerance": ("1", "how exact a scene wants it, of the largest value along the curve"),
+    "total_error": ("1", "error of model and mesh together that is not expected to be exceeded"),
+    "total_error_by": ("", "how the total error is known, and whether that proves the tolerance"),
     "code": ("", "digest of the sources that solved the case"),
 }
 OF_MUSCLE = {  # columns of a muscle
@@ -157,7 +161,9 @@ def of_muscle(studied: StudiedMuscle) -> list[Any]:
 def _of_curve(curve: Curve) -> list[Any]:
     place, solution = curve.place, curve.solution
     names = [place.muscle, place.model, place.variant, place.group, place.held]
-    return [*names, curve.key, solution.status.value, solution.reason, solution.code]
+    kept = curve.kept or Kept(np.nan, np.nan, "")
+    promised = [kept.tolerance, kept.error, kept.by]
+    return [*names, curve.key, solution.status.value, solution.reason, *promised, solution.code]
 
 
 def state_rows(curves: Sequence[SolvedCase]) -> pd.DataFrame:

@@ -17,7 +17,17 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from solver.status import Flag, StateStatus
-from workflow.data.scene_data import FLAGS, REFERENCE, STRENGTH, STRETCH, SUSPECT, TIME, error_of
+from workflow.data.scene_data import (
+    FLAGS,
+    REFERENCE,
+    STRENGTH,
+    STRETCH,
+    SUSPECT,
+    TIME,
+    TOLERANCE,
+    TOTAL_BY,
+    error_of,
+)
 from workflow.data.states import GOOD, SHOWN
 from workflow.data.strain import LONG
 from workflow.figures.labels import SERIES, shown
@@ -32,6 +42,7 @@ from workflow.figures.style import (
     marked,
     series,
 )
+from workflow.plan.plan import NOT_PROVED
 
 Array = NDArray[np.float64]
 UNSTABLE = StateStatus.UNSTABLE.value
@@ -217,9 +228,32 @@ def note_gaps(
         _stretched(table),
         _one_line(table, x, y) if y else "",
         _bands(figure),
+        _promised(table, by),
     ]
     if any(said):
         note(figure, " ".join(sentence for sentence in said if sentence))
+
+
+def _promised(table: pd.DataFrame, by: list[str]) -> str:
+    """Which curves are as exact as a scene wants, by model and mesh, and which may not be."""
+    if TOLERANCE not in table:
+        return ""
+    found: dict[str, list[str]] = {}
+    keys = ["source", *by, *(["variant"] if _varies(table, "variant") else [])]
+    rows = table[table[TOLERANCE].notna()]
+    for (tolerance, known, source, *values), _ in rows.groupby(
+        [TOLERANCE, TOTAL_BY, *keys], sort=False, dropna=False
+    ):
+        named = [shown(c, v) for c, v in zip(keys[1:], values, strict=True) if pd.notna(v)]
+        is_proved = not known.startswith(NOT_PROVED)
+        how = "Proved to be" if is_proved else f"{NOT_PROVED.capitalize()} to be"
+        said = f"{how} within {100 * tolerance:g} % of a refined solid"
+        found.setdefault(said, []).append(
+            ", ".join(dict.fromkeys([look_of(source)["label"], *named]))
+        )
+    if len(found) == 1:
+        return f"{next(iter(found))}."
+    return " ".join(f"{said}: {'; '.join(names)}." for said, names in found.items())
 
 
 def _reasons(table: pd.DataFrame, y: str | None, log: bool) -> pd.Series:

@@ -32,6 +32,7 @@ from workflow.study.study import load
 
 FIELDS = {"stress", "deformed_shape"}
 WITHIN = "_within_"  # in the name of a variant, after its own, while its climb has not ended
+NOT_PROVED = "not proved"  # how what is known of a curve begins whose tolerance is not
 
 
 @dataclass(frozen=True, order=True)
@@ -104,6 +105,22 @@ class PlannedCase:
 
 
 @dataclass(frozen=True)
+class Kept:
+    """What a climb has promised of a curve.
+
+    Attributes
+    ----------
+    tolerance : that was asked for, a share of the largest value along the curve
+    error : of model and mesh together, which it is not expected to exceed
+    by : how that is known, and whether it proves the tolerance
+    """
+
+    tolerance: float
+    error: float
+    by: str
+
+
+@dataclass(frozen=True)
 class Plan:
     """What there is to do.
 
@@ -116,6 +133,7 @@ class Plan:
     finer : by case the one on a mesh twice as fine by which its errors are measured
     meshes_by : by case that a climb has come to, the keys of its curve on the next finer and the
         next coarser mesh of its model, where the climb has had them; else empty
+    kept : what climbs that have ended have promised, by place
     """
 
     study: Study
@@ -125,6 +143,7 @@ class Plan:
     shown: dict[str, str]
     finer: dict[str, str] = field(default_factory=dict)
     meshes_by: dict[str, tuple[str, str]] = field(default_factory=dict)
+    kept: dict[Place, Kept] = field(default_factory=dict)
 
     @property
     def promises(self) -> dict[str, Promise]:

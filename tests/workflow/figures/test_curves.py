@@ -8,7 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from solver.status import StateStatus
-from workflow.data.scene_data import CONTRACTION, FORCE, PRESSURE, states
+from workflow.data.scene_data import CONTRACTION, FORCE, PRESSURE, TOLERANCE, TOTAL_BY, states
 from workflow.figures import curves, style
 from workflow.figures.labels import SERIES, series
 
@@ -113,6 +113,19 @@ def test_no_line_of_a_note_parts_a_number_from_its_unit():
         assert len(lines) > 1
         assert not any(line.startswith(("%", "MPa", "mm", "N;")) for line in lines)
         assert "\N{NO-BREAK SPACE}" not in text.get_text()
+
+
+def test_what_was_promised_of_curves_is_said_and_what_was_not(small_scene):
+    table = states(small_scene(), ["force"])
+    proved = table.assign(**{TOLERANCE: 0.02, TOTAL_BY: "estimated from 112 like muscles"})
+    other = table.assign(**{PRESSURE: 0.1, TOLERANCE: 0.02, TOTAL_BY: "not proved; not known"})
+    said = []
+    for rows in (proved, pd.concat([proved, other])):
+        figure = Figure(figsize=(7, 3))
+        curves.note_gaps(figure, rows, [PRESSURE], CONTRACTION, y=FORCE)
+        said.append(figure.texts[0].get_text().replace("\n", " "))
+    assert said[0] == "Proved to be within 2 % of a refined solid."
+    assert "Not proved to be within 2 % of a refined solid: FE solid, 0.1 MPa." in said[1]
 
 
 def test_no_note_without_gaps(small_scene):

@@ -99,6 +99,12 @@ def test_the_dataset_has_the_models_that_were_come_to(folder):
     assert {"membrane", "solid"} == set(group.model.values)
     chosen = group.sel(muscle="one", model="membrane", pressure=0.3, variant="default_within_0.05")
     assert chosen.force.notnull().sum() == 4
+    assert float(chosen.tolerance) == 0.05
+    assert 0 < float(chosen.total_error) <= 0.05
+    assert str(chosen.total_error_by.values).startswith("estimated from")
+    named = group.sel(muscle="one", model="membrane", pressure=0.3, variant="default")
+    assert named.tolerance.isnull()
+    assert str(named.total_error_by.values) == ""
 
 
 def test_errors_that_are_measured_say_so(folder):
