@@ -136,6 +136,7 @@ def _models(scene: Scene, choice: Choice, estimates: Sequence[Estimate]) -> Iter
         how = "the best there is"
     if {"stress", "deformed_shape"} & set(scene.quantities):
         how += "; errors are those of the force, fields are not measured"
+    how += "; errors are those of the paper's muscle"
     if scene.in_time:
         how += "; errors and seconds are those of the curve at rest"
     yield f"  models   {how}"
@@ -172,7 +173,7 @@ def _climb(asked: PlannedCase, end: Mapping[str, Any] | None) -> Iterator[str]:
         mark = ">" if name == (end["rung"] if end else promise.start) else " "
         lacks = ", ".join(_left_out(promise, name))
         without = f"; leaves out {lacks}" if lacks else ""
-        said = "no muscles of the table are like it" if known is None else _guessed(known)
+        said = _not_guessed(promise, name, called) if known is None else _guessed(known)
         yield f"    {mark} {name:15} {said}{without}"
         if end and (found := end["verdicts"][name])["by"].startswith("measured"):
             yield f"      {'':15} {found['by']}: {_share(found['error'])}"
@@ -180,14 +181,22 @@ def _climb(asked: PlannedCase, end: Mapping[str, Any] | None) -> Iterator[str]:
         yield f"    begins on {promise.start}, and climbs until it is proved"
         return
     held = "is proved" if end["holds"] else "is the best there is, and not proved"
-    yield f"    {end['rung']} {held}: {_share(end['error'])}, {end['by']}"
-    tried = (
-        ", ".join(f"{name} at {_counted(count, 'state')}" for name, count in end["tried"])
-        or "nothing"
-    )
+    error = "" if isnan(end["error"]) else f"{_share(end['error'])}, "
+    yield f"    {end['rung']} {held}: {error}{end['by']}"
+    tried = ", ".join(f"{name} at {_counted(count, 'state')}" for name, count in end["tried"])
     cost = sum(end["seconds"].values())
     spent = "what that took is not known" if isnan(cost) else f"{plain(cost, 2)} s of the processor"
-    yield f"    solved {tried}; {spent}"
+    yield f"    solved {tried or 'nothing, its record was there'}; {spent}"
+
+
+def _not_guessed(promise: Promise, name: str, called: Mapping[str, str]) -> str:
+    """Why nothing is said of the error of a rung."""
+    case = promise.rungs[name]
+    unknown = [each for each in promise.judged if like_muscles.guess(case, name, (each,)) is None]
+    if FOLLOWS in unknown:
+        return "no muscles of the table are like it"
+    names = ", ".join(called.get(each, each).replace("_", " ") for each in unknown)
+    return f"of like muscles the error of {names} is not known"
 
 
 def _left_out(promise: Promise, name: str) -> list[str]:

@@ -155,6 +155,16 @@ def test_explain_says_what_was_guessed_and_what_was_measured(folder):
     assert "s of the processor" in after
 
 
+def test_explain_does_not_blame_the_muscle_for_what_was_not_measured(folder):
+    """Muscles of the table are like it, but of free contractions it has no errors."""
+    asked = "quantities: [free_contraction], tolerance: 0.05"
+    Path("free.yaml").write_text(STUDY.replace("tolerance: 0.05", asked))
+    said = "\n".join(lines(plan(load("free.yaml"))))
+    loose = said.partition("\nloose: ")[2].partition("\n\n")[0]
+    assert "of like muscles the error of free contraction is not known" in loose
+    assert "no muscles of the table are like it" not in loose
+
+
 def test_explain_says_what_effects_are_worth_on_this_muscle(folder):
     """Guessed before, and measured where two records differ by them; each scene on one screen."""
     before, after = (
