@@ -17,7 +17,7 @@ from solver.case import Case
 from solver.load_path import ZERO_FORCE
 from solver.models import MODELS
 from solver.record import Solution
-from solver.status import VALID, Flag
+from solver.status import VALID, Flag, StateStatus
 from workflow.study.judged_quantities import VARIABLES
 
 Array = NDArray[np.float64]
@@ -43,6 +43,12 @@ def variable_of(case: Case, quantity: str) -> str:
 def is_valid(solution: Solution) -> NDArray[np.bool_]:
     """Which states may be believed."""
     return np.array([status in VALID for status in solution.state_status])
+
+
+def is_lost(solution: Solution) -> NDArray[np.bool_]:
+    """Which states a rung has not; a curve that is nowhere at zero force lacks none there."""
+    none = [status is StateStatus.NO_ROOT for status in solution.state_status]
+    return np.asarray(~is_valid(solution) & ~np.array(none))
 
 
 def is_answer(case: Case, solution: Solution) -> NDArray[np.bool_]:

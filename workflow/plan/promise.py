@@ -30,7 +30,15 @@ import numpy as np
 
 from solver.case import Case, canonical, digest
 from solver.record import Solution
-from workflow.plan.judged import FOLLOWS, ZERO, difference, is_answer, is_valid, variable_of
+from workflow.plan.judged import (
+    FOLLOWS,
+    ZERO,
+    difference,
+    is_answer,
+    is_lost,
+    is_valid,
+    variable_of,
+)
 from workflow.plan.like_muscles import Guess, guess, seconds
 from workflow.plan.likeness import is_pushed, share
 
@@ -205,7 +213,8 @@ class _Climb:
             if not is_valid(self.solved[name]).any():
                 return Verdict(inf, 0.0, "no state is valid")
             if lost := self._lost(name):
-                return Verdict(inf, 0.0, f"{lost} states are lost, not valid or smoothed")
+                what = "state is" if lost == 1 else "states are"
+                return Verdict(inf, 0.0, f"{lost} {what} lost, not valid or smoothed")
         if here := self._here(name):
             return here
         known = self._guess(name)
@@ -236,12 +245,13 @@ class _Climb:
         """Whether a state of the curve is pushed, as far as a solved rung shows it."""
         if any(is_pushed(found).any() for found in self.solved.values()):
             return True
-        return False if any(is_valid(found).all() for found in self.solved.values()) else None
+        whole = any(not is_lost(found).any() for found in self.solved.values())
+        return False if whole else None
 
     def _lost(self, name: str) -> int:
         """States of a solved rung that are no answer, unless no mesh of the best model has one."""
-        case = self.asked.rungs[name]
-        good = is_answer(case, self.solved[name])
+        case, own = self.asked.rungs[name], self.solved[name]
+        good = is_answer(case, own) | ~(is_valid(own) | is_lost(own))
         every = self._meshes(self.names[-1])
         meshes = [each for each in every if each in self.solved]
         if self.names[-1] in meshes and len(meshes) >= min(2, len(every)):
@@ -366,14 +376,14 @@ class _Climb:
     def _unguessed(self) -> str:
         """Without a guess: meshes of the best model, from the coarsest, until states are lost."""
         meshes = [n for n in self._meshes(self.names[-1])[::-1] if not self._given_up(n)]
-        short = (n for n in meshes if n not in self.solved or not is_valid(self.solved[n]).all())
+        short = (n for n in meshes if n not in self.solved or is_lost(self.solved[n]).any())
         return next(short, meshes[-1])
 
     def _given_up(self, name: str) -> bool:
         """Whether a mesh is not tried: a coarser one has lost states, or is folded."""
         if name in self.solved:
             return False
-        lost = any(not is_valid(each).all() for each in self._coarser(name))
+        lost = any(is_lost(each).any() for each in self._coarser(name))
         open_ones_lost = inf in map(self.closed.get, self._meshes(name))
         return lost or open_ones_lost or self._is_folded(name)
 
@@ -451,7 +461,7 @@ class _Climb:
         path = replace(path, stops=tuple(path.stops[k] for k in numbers))
         found = self.solve(replace(self.asked.rungs[finer], path=path))
         self.tried.append((finer, path.states))
-        if not is_valid(found).all():
+        if is_lost(found).any():
             self.closed[name] = inf
             return
         case, own = self.asked.rungs[name], self.solved[name]

@@ -359,6 +359,27 @@ def test_a_state_that_no_rung_has_is_no_failure_of_one(rungs, monkeypatch):
     assert end.verdicts["membrane"].by == by
 
 
+def test_a_curve_that_is_nowhere_at_zero_force_lacks_none_there(meshes, monkeypatch):
+    guessed(monkeypatch)
+    path = replace(meshes["solid"].path, zero_force=True)
+    curves = {name: replace(case, path=path) for name, case in meshes.items()}
+    known = {}
+
+    def solve(case):
+        states = unreached(6) | {"force": np.append(FORCE, np.nan)}
+        status = [StateStatus.CONVERGED] * 5 + [StateStatus.NO_ROOT]
+        flags = [frozenset()] * 6
+        known[case.key] = Solution(
+            status=CaseStatus.CONVERGED, reason="", states=states, state_status=status, flags=flags
+        )
+        return known[case.key]
+
+    promise = Promise(0.01, (FOLLOWS, ZERO), curves)
+    end = climb(promise, solve, lambda case: known.get(case.key))
+    assert (end.rung, end.holds, end.error) == ("solid", True, 0.0)
+    assert len(known) == 2
+
+
 def test_the_finest_mesh_may_lose_what_a_coarser_one_has(meshes, monkeypatch):
     guessed(monkeypatch, cylinder=0.1, membrane=0.03, solid_coarser=0.02, solid_finer=1e-4)
     solver = Solver(meshes, lost=("solid, finer",), solid_coarser=0.004)
