@@ -300,6 +300,7 @@ class _Question:
             notes=(
                 *notes,
                 *self._notes(found),
+                *of_threads(case),
                 *filter(None, (from_others, *map(words.of_state, solution.notes))),
             ),
             case=case.key,
@@ -432,6 +433,16 @@ def lines(answer: Answer) -> list[str]:
     said = [f"{answer.muscle} at {given}, by {answer.model}:"]
     said += [f"  {name:<{width}}{value}" for name, value in rows if "nan" not in value]
     return said + [f"  note: {note}" for note in answer.notes]
+
+
+def of_threads(case: Case) -> tuple[str, ...]:
+    """What the load of a thread is, where that is not its tension."""
+    if "discrete_threads" not in case.active_effects:
+        return ()
+    return (
+        "the load of a thread is that of its most stretched point across its width, by which its "
+        "stiffness is spread; its tension is less",
+    )
 
 
 def as_dict(answer: Answer) -> dict[str, Any]:

@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 
 from solver import record
+from solver.load_path import LoadPath
 from workflow import answers
 from workflow.__main__ import main
+from workflow.answers import question
 from workflow.answers.quick import Quick
 from workflow.study import library
 from workflow.study.errors import StudyError
@@ -258,3 +260,9 @@ def test_a_muscle_of_the_library_needs_no_study(folder, tmp_path, monkeypatch):
     assert answers.ask(name, **given).force == first.force
     with pytest.raises(StudyError, match="no such muscle in library"):
         answers.ask("nothing", **given)
+
+
+def test_where_threads_have_a_width_their_load_is_not_called_a_tension(make_case):
+    path = LoadPath(kind="isobaric", held=0.3, stops=(0.1,))
+    assert "its tension is less" in question.of_threads(make_case(model="cell", path=path))[0]
+    assert question.of_threads(make_case(model="solid", path=path)) == ()
