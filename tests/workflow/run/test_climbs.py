@@ -207,7 +207,8 @@ def test_a_variant_keeps_its_name_whatever_that_is(folder, monkeypatch):
     (place,) = found.scenes["other"]
     assert place.variant == f"{name}_within_0.01"
     for rung, added in (("membrane", ""), ("solid, finer", "_finer")):
-        monkeypatch.setattr(settled, "outcome", lambda _, rung=rung: {"rung": rung})
+        end = {"rung": rung, "holds": True, "error": 0.001, "by": "estimated", "whole": []}
+        monkeypatch.setattr(settled, "outcome", lambda _, end=end: end)
         (place,) = settled.settled(found).scenes["other"]
         assert place.variant == name + added
 

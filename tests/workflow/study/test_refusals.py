@@ -579,7 +579,7 @@ REFERENCES = [
     ("reference: ./", "reference", "cannot be read"),
     ('reference: "a\\0b.csv"', "reference", "cannot be read"),
     ("reference: '{b}.csv'", "reference", "a path without { and }"),
-    ("reference: FOLDER/empty.csv", "reference", "no force in it"),
+    ("reference: FOLDER/empty.csv", "reference", "nothing measured is in it"),
     ("reference: FOLDER/words.csv", "reference", "words.csv:2: not all of it are numbers"),
     ("reference: FOLDER/good.csv, fit_pressure: 0.2", "fit_pressure", "no force at 0.2 MPa"),
     ("reference: FOLDER/good.csv, report_pressure: [0.3, 0.4]", "report_pressure", "at 0.4 MPa"),
