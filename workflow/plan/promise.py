@@ -180,6 +180,7 @@ class _Climb:
         self.solved = {n: found for n, case in rungs.items() if (found := self.known(case))}
         self.checked: dict[tuple[str, str], float] = {}  # difference of a rung from a better one
         self.closed: dict[str, float] = {}  # error of a mesh by a finer one where that was open
+        self.guessed: dict[tuple[str, bool], Guess | None] = {}  # by rung, and whether it is pushed
         self.tried: list[tuple[str, int]] = []
 
     def first(self) -> str:
@@ -239,7 +240,10 @@ class _Climb:
         seen = self._is_pushed()
         if seen is None:
             return self.asked.guesses[name]
-        return guess(self.asked.rungs[name], name, self.asked.judged, pushed=seen)
+        if (name, seen) not in self.guessed:
+            case = self.asked.rungs[name]
+            self.guessed[name, seen] = guess(case, name, self.asked.judged, pushed=seen)
+        return self.guessed[name, seen]
 
     def _is_pushed(self) -> bool | None:
         """Whether a state of the curve is pushed, as far as a solved rung shows it."""
@@ -392,8 +396,9 @@ class _Climb:
 
         At the ends of muscles that pull, rubber may have as small a det F, and nothing folds.
         """
-        each = [*self._coarser(name), *([self.solved[name]] if name in self.solved else [])]
-        return any((found.states["min_det_f"][is_pushed(found)] < FOLDED).any() for found in each)
+        meshes = self._meshes(name)
+        there = [self.solved[n] for n in meshes[meshes.index(name) :] if n in self.solved]
+        return any((found.states["min_det_f"][is_pushed(found)] < FOLDED).any() for found in there)
 
     def _coarser(self, name: str) -> list[Solution]:
         """By the coarser meshes of a model, of those that are there."""
